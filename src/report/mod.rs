@@ -18,6 +18,7 @@ mod proof_record;
 mod propellant_record;
 mod reliability_record;
 mod require_answer;
+mod sensitivity_answer;
 mod simulate_answer;
 mod size_answer;
 mod stated;
@@ -51,6 +52,7 @@ pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord
 pub use propellant_record::{PropellantShortage, StoresRecord};
 pub use reliability_record::{ReliablePathRecord, SuccessEstimate, reliable_paths_text};
 pub use require_answer::{RequireAnswer, RequireTry};
+pub use sensitivity_answer::{SensitivityAnswer, SensitivityRow};
 pub use simulate_answer::{
     EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord, SuccessRequirement,
     simulate_text,

@@ -48,6 +48,7 @@ mod landing_tally;
 mod mission;
 mod options;
 mod outcome;
+mod paired;
 mod quantiles;
 mod rates;
 mod record;
@@ -65,6 +66,7 @@ pub use crate::{
 pub use mission::Mission;
 pub use options::{MissionPoint, Observer, SimulationError, TrialOptions};
 pub use outcome::{OutcomeCounts, Policy, TrialOutcome};
+pub use paired::PairedDifference;
 pub use quantiles::QuantileSketch;
 pub use record::{HopRecord, Trajectory, TrialRecord};
 pub use simulation::{FlightEnd, Simulation};

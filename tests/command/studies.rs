@@ -187,7 +187,7 @@ fn experiments_answer_as_the_command() {
     let replans = refused("rolling_surely", &["uncertainty.policy=replan"]);
     assert!(matches!(replans, ExperimentError::Replans), "{replans}");
     let errorless = refused("simple", &[]);
-    assert!(matches!(errorless, ExperimentError::NoUncertainty), "{errorless}");
+    assert!(matches!(errorless, ExperimentError::NoUncertainty { .. }), "{errorless}");
     let wall = plan(&case("wall", &[], Commands::OfTheMachine), PlanOptions::default(), &()).unwrap();
     assert!(experiment(&wall, Experiment::WorstDrift, DriftReading::default(), &()).unwrap().answer.is_none());
 }

@@ -159,7 +159,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["experiment", "compare"])]
     pub(crate) tally: Option<PathBuf>,
     /// Experiment to run instead: worst-drift (the paper's), cone-width (the paper's claim), risk-trade (hops against
-    /// reliability) [default: none]
+    /// reliability), sensitivity (what each error costs) [default: none]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["compare", "until_half_width"])]
     pub(crate) experiment: Option<String>,
     /// How worst-drift interprets the paper: noise-at-landing, noise-in-flight, farthest-from-goal [default: noise-at-landing]
@@ -327,14 +327,14 @@ impl SimulateArgs {
         let experiment = named(&Experiment::ALL, Experiment::name, name, "--experiment")?;
         let reading = self.reading.as_deref().map(|reading| named(&DriftReading::ALL, DriftReading::name, reading, "--reading"));
         let reading = reading.transpose()?.unwrap_or_default();
-        let trades = experiment == Experiment::RiskTrade;
+        let flies = experiment.flies_trials();
         let without_effect = [
             ("--output", self.output.is_some()),
             ("--reading", self.reading.is_some() && experiment != Experiment::WorstDrift),
-            ("--trials", self.trials.is_some() && !trades),
-            ("--policy", self.policy.is_some() && !trades),
-            ("--threads", self.answer.threads != 0 && !trades),
-            ("--plot", self.plot.is_some() && trades),
+            ("--trials", self.trials.is_some() && !flies),
+            ("--policy", self.policy.is_some() && !flies),
+            ("--threads", self.answer.threads != 0 && !flies),
+            ("--plot", self.plot.is_some() && experiment == Experiment::RiskTrade),
         ];
         match without_effect.into_iter().find(|(_, given)| *given) {
             Some((option, _)) => {
