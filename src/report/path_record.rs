@@ -10,6 +10,7 @@ use super::{
     limit_pair::LimitPair,
     propellant_record::{StoresRecord, stores_columns},
     reliability_record::SuccessEstimate,
+    sigma_margins::SigmaMarginsRecord,
     stated::stated,
 };
 use crate::{
@@ -62,6 +63,9 @@ pub struct HopRecord {
     pub map: Option<MapRecord>,
     /// By how much it keeps each limit.
     pub margins: HopMarginsRecord,
+    /// The same in standard deviations, where errors are given and the estimate was wanted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub margins_sigma: Option<SigmaMarginsRecord>,
     /// For a machine that takes its commands in steps: what the command was aimed at.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub aim: Option<AimRecord>,
@@ -257,6 +261,7 @@ impl HopRecord {
                 heading_true_deg: projection.map(|projection| heading_true_deg(projection, takeoff, hop.heading_deg)),
             }),
             margins: HopMarginsRecord(hop.margins),
+            margins_sigma: None,
             stores: hop.into(),
             aim: hop.aim.as_ref().map(AimRecord::from),
         }

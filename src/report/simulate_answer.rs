@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{CheckAnswer, FurtherMeans, check_text, text::Sheet};
+use super::{AdviceRecord, CheckAnswer, FurtherMeans, check_text, text::Sheet};
 use crate::uncertainty::{
     ErrorSummary, LandingEllipse, LandingSummary, OutcomeCounts, Policy, RatePoint, Summary, TrialOutcome, Wilson,
 };
@@ -23,6 +23,9 @@ pub struct SimulateAnswer {
     /// Whether the success that was asked for is shown.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub requirement: Option<SuccessRequirement>,
+    /// After a success rate below 0.9: which keys of the scenario would help most, the first before the others.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub advice: Vec<AdviceRecord>,
 }
 
 /// A success rate that trials have to show.
@@ -49,6 +52,21 @@ impl SimulateAnswer {
     /// Whether the success that was asked for, if any was, is shown.
     pub fn shows_success(&self) -> bool {
         self.requirement.is_none_or(|requirement| requirement.success_min_shown)
+    }
+
+    /// What failed most often, and what would help, as lines.
+    fn advice_text(&self) -> String {
+        let Some(simulation) = self.simulation.as_ref().filter(|_| !self.advice.is_empty()) else { return String::new() };
+        let mut text = String::new();
+        let failed = simulation.trials - simulation.outcomes.reached;
+        if let Some(most) = simulation.failures.first() {
+            let FailureRecord { outcome, hop, count } = most;
+            text.push_str(&format!("\nmost frequent failure: {outcome} at hop {hop}, {count} of {failed} trials that fail\n"));
+        }
+        for advice in &self.advice {
+            text.push_str(&format!("advice: {}\n", advice.sentence()));
+        }
+        text
     }
 
     /// Whether the success that was asked for is shown, as a sentence.
@@ -79,6 +97,7 @@ pub fn simulate_text(answer: &SimulateAnswer, means: FurtherMeans<'_>) -> String
         text.push('\n');
         text.push_str(&record.text());
     }
+    text.push_str(&answer.advice_text());
     if let Some(sentence) = answer.requirement_text() {
         text.push('\n');
         text.push_str(&sentence);
@@ -104,6 +123,8 @@ pub struct SimulationRecord {
     pub success_rate_ci95: [f64; 2],
     /// The outcomes of the trials; they add up to `trials`.
     pub outcomes: OutcomeRecord,
+    /// The outcomes other than `reached` by the hop that ended the trial, the most frequent first.
+    pub failures: Vec<FailureRecord>,
     /// The number of hops flown, with or without a landing.
     pub hops_flown: u64,
     /// The landings by hop number: all planned hops, and any further hops flown.
@@ -138,6 +159,31 @@ pub struct OutcomeRecord {
     pub hop_limit: u64,
     /// Its next hop took more propellant than it had left.
     pub out_of_propellant: u64,
+}
+
+/// Trials that failed in the same way at the same hop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct FailureRecord {
+    /// How they ended.
+    pub outcome: TrialOutcome,
+    /// The hop that ended them, from 1; 0 if they ended before any.
+    pub hop: u32,
+    /// How many.
+    pub count: u64,
+}
+
+impl FailureRecord {
+    /// All failures of some trials, the most frequent first.
+    fn rows(summary: &Summary) -> Vec<Self> {
+        let of_hop = |(hop, counts): (usize, &OutcomeCounts)| {
+            let hop = u32::try_from(hop).unwrap_or(u32::MAX);
+            let failed = counts.each().filter(|(outcome, count)| *outcome != TrialOutcome::Reached && *count > 0);
+            failed.map(|(outcome, count)| Self { outcome, hop, count }).collect::<Vec<_>>()
+        };
+        let mut rows: Vec<Self> = summary.ends.iter().enumerate().flat_map(of_hop).collect();
+        rows.sort_by(|a, b| b.count.cmp(&a.count).then(a.hop.cmp(&b.hop)).then(a.outcome.cmp(&b.outcome)));
+        rows
+    }
 }
 
 /// The landings of one hop number.
@@ -222,6 +268,7 @@ impl SimulationRecord {
             success_rate: summary.success.rate,
             success_rate_ci95: [summary.success.low, summary.success.high],
             outcomes: OutcomeRecord::new(&summary.outcomes),
+            failures: FailureRecord::rows(summary),
             hops_flown: summary.hops_flown,
             landings: landings.chain((flown + 1..=planned).map(none)).collect(),
             convergence: summary.convergence.iter().enumerate().filter(|(i, _)| kept(*i)).map(|(_, point)| point.into()).collect(),

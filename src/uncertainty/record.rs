@@ -96,6 +96,17 @@ pub struct TrialRecord {
     pub goal_distance_m: f64,
 }
 
+impl TrialRecord {
+    /// The hop that ended the trial, from 1: the last one flown, or the one that was not flown because its take-off slid or its propellant
+    /// was not there; 0 if the trial ended before any.
+    pub const fn last_hop(&self) -> u32 {
+        match self.outcome {
+            TrialOutcome::SlidAtTakeoff | TrialOutcome::OutOfPropellant => self.hops.saturating_add(1),
+            _ => self.hops,
+        }
+    }
+}
+
 /// A trial with all its hops.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {

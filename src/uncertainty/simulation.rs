@@ -31,13 +31,13 @@ const STRETCH: u64 = 50;
 #[derive(Debug)]
 pub struct Simulation {
     mission: Mission,
-    uncertainty: Uncertainty,
-    ground_and_plan: GroundAndPlan,
+    pub(super) uncertainty: Uncertainty,
+    pub(super) ground_and_plan: GroundAndPlan,
 }
 
 /// The mission's ground and its plan.
 #[derive(Debug)]
-enum GroundAndPlan {
+pub(super) enum GroundAndPlan {
     Chain(ChainGround, Plan<ChainPosition>),
     Map(DemGround, Plan<MapPosition>),
 }
@@ -287,7 +287,7 @@ impl Simulation {
 /// Adds the results of some trials, in their order; those with a number below `wanted_end` with all their hops.
 fn add(flown: &Flown, tally: &mut Statistics, trajectories: &mut Vec<Trajectory>, wanted_end: u64) {
     for trial in &flown.trials {
-        tally.trial(trial.trial, trial.outcome, trial.hops);
+        tally.trial(trial);
         if trial.trial < wanted_end {
             let hops = flown.hops.iter().filter(|hop| hop.trial == trial.trial).copied().collect();
             trajectories.push(Trajectory { trial: *trial, hops });

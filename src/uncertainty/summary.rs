@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Point2};
 
-use super::{OutcomeCounts, Policy, Trajectory, Wilson};
+use super::{OutcomeCounts, Policy, QuantileSketch, Trajectory, Wilson};
 use crate::quantity::Angle;
 
 /// The statistics of many trials, bit-identical for any number of threads.
@@ -18,6 +18,10 @@ pub struct Summary {
     pub trials: u64,
     /// The outcomes; their sum is `trials`.
     pub outcomes: OutcomeCounts,
+    /// The outcomes by the hop that ended the trial ([`TrialRecord::last_hop`](super::TrialRecord::last_hop)); 0: before any.
+    pub ends: Vec<OutcomeCounts>,
+    /// Of the trials that stopped off the goal: horizontal distances from it, m.
+    pub missed_m: QuantileSketch,
     /// The success rate with its 95 % interval.
     pub success: Wilson,
     /// The number of hops flown, landed or not.

@@ -1,11 +1,13 @@
 //! How reliably a planned path is flown.
 
+mod advice;
 mod flyer;
 #[cfg(feature = "plot")]
 mod pictures;
 
 use std::{ops::Range, path::PathBuf, sync::Arc};
 
+use advice::advice;
 pub(super) use flyer::Flyer;
 
 use super::{Planned, TrialGround};
@@ -156,7 +158,9 @@ impl Trials {
     pub fn answer_of(&self, tally: &Tally) -> SimulateAnswer {
         let hops = self.planned.path.as_ref().map_or(0, |path| path.hops.len());
         let simulation = Some(SimulationRecord::new(&tally.summary(), hops));
-        SimulateAnswer { check: self.planned.answer.check.clone(), simulation, compare: Vec::new(), requirement: None }.requiring(self.success_min)
+        let advice = advice(&self.planned, &tally.summary());
+        SimulateAnswer { check: self.planned.answer.check.clone(), simulation, compare: Vec::new(), requirement: None, advice }
+            .requiring(self.success_min)
     }
 
     /// Flies them, policy by policy on the same draws.
@@ -167,7 +171,7 @@ impl Trials {
         let Self { planned, policies, options, success_min, tally, warnings } = self;
         let check = planned.answer.check.clone();
         let Some(path) = &planned.path else {
-            let answer = SimulateAnswer { check, simulation: None, compare: Vec::new(), requirement: None };
+            let answer = SimulateAnswer { check, simulation: None, compare: Vec::new(), requirement: None, advice: Vec::new() };
             let answer = answer.requiring(success_min);
             return Ok(Simulated { planned, summaries: Vec::new(), tallies: Vec::new(), answer, warnings, ground: None });
         };
@@ -188,12 +192,13 @@ impl Trials {
         let records: Vec<_> = summaries.iter().map(|summary| SimulationRecord::new(summary, hops)).collect();
         let own = planned.case.scenario.uncertainty.unwrap_or_default().policy;
         let simulation = summaries.iter().position(|summary| summary.policy == own).map(|i| records[i].clone());
+        let advice = summaries.iter().find(|summary| summary.policy == own).map(|summary| advice(&planned, summary)).unwrap_or_default();
         let compare = if records.len() > 1 { records } else { Vec::new() };
         Ok(Simulated {
             planned: Arc::clone(&planned),
             summaries,
             tallies,
-            answer: SimulateAnswer { check, simulation, compare, requirement: None }.requiring(success_min),
+            answer: SimulateAnswer { check, simulation, compare, requirement: None, advice }.requiring(success_min),
             warnings,
             ground: flyer.into_ground(),
         })
