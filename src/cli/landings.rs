@@ -8,7 +8,7 @@ use std::{
 use chta::{
     report::{
         MapKnowledge,
-        landings::{CsvLandings, LandingRow, LandingWriter},
+        landings::{CsvLandings, LandingColumns, LandingRow, LandingWriter},
     },
     study::{Simulated, Trials},
     terrain::MapProjection,
@@ -27,8 +27,8 @@ pub(crate) struct RowFile<'a> {
 }
 
 impl<'a> RowFile<'a> {
-    /// Opens it in the format of its extension.
-    pub(crate) fn begin(path: &'a Path, loaded: &Loaded) -> Result<Self, Failure> {
+    /// Opens it in the format of its extension; `drawn`: with the errors drawn for each hop.
+    pub(crate) fn begin(path: &'a Path, drawn: bool, loaded: &Loaded) -> Result<Self, Failure> {
         let on_dem = loaded.case.is_on_dem();
         let projection = loaded.case.prepared.projection.clone().filter(|_| on_dem);
         let known = match (on_dem, &projection) {
@@ -36,9 +36,10 @@ impl<'a> RowFile<'a> {
             (true, None) => MapKnowledge::Metres,
             (true, Some(_)) => MapKnowledge::Projection,
         };
+        let columns = LandingColumns { known, drawn };
         let unwritten = |error: io::Error| Failure::message(format!("{}: cannot be written ({error})", path.display()));
         if path == Path::new("-") {
-            let writer = CsvLandings::begin(BufWriter::new(io::stdout()), known).map_err(unwritten)?;
+            let writer = CsvLandings::begin(BufWriter::new(io::stdout()), columns).map_err(unwritten)?;
             return Ok(Self { writer: Box::new(writer), pending: None, known, projection });
         }
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
@@ -48,9 +49,9 @@ impl<'a> RowFile<'a> {
             Some("csv") => {
                 pending = Pending::begin(path)?;
                 let out = BufWriter::with_capacity(1 << 16, pending.handle()?);
-                writer = Box::new(CsvLandings::begin(out, known).map_err(unwritten)?);
+                writer = Box::new(CsvLandings::begin(out, columns).map_err(unwritten)?);
             }
-            Some("parquet") => (pending, writer) = parquet(path, loaded, known)?,
+            Some("parquet") => (pending, writer) = parquet(path, loaded, columns)?,
             _ => {
                 return Err(Failure::message(format!(
                     "--output: '{}' ends neither in .csv nor in .parquet: give the landings one of the two names",
@@ -75,7 +76,11 @@ impl<'a> RowFile<'a> {
 
 /// A Parquet file, with scenario and seed in its metadata.
 #[cfg(feature = "parquet")]
-fn parquet<'a>(path: &'a Path, loaded: &Loaded, known: MapKnowledge) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
+fn parquet<'a>(
+    path: &'a Path,
+    loaded: &Loaded,
+    columns: LandingColumns,
+) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
     use chta::report::landings::ParquetLandings;
 
     let seed = loaded.case.scenario.uncertainty.unwrap_or_default().seed;
@@ -87,14 +92,18 @@ fn parquet<'a>(path: &'a Path, loaded: &Loaded, known: MapKnowledge) -> Result<(
     ];
     let pending = Pending::begin(path)?;
     let out = BufWriter::with_capacity(1 << 16, pending.handle()?);
-    let writer = ParquetLandings::begin(out, known, &words)
+    let writer = ParquetLandings::begin(out, columns, &words)
         .map_err(|error| Failure::message(format!("{}: cannot be written ({error})", path.display())))?;
     Ok((pending, Box::new(writer)))
 }
 
 /// Parquet without the feature `parquet`: always an error.
 #[cfg(not(feature = "parquet"))]
-fn parquet<'a>(path: &'a Path, _loaded: &Loaded, _known: MapKnowledge) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
+fn parquet<'a>(
+    path: &'a Path,
+    _loaded: &Loaded,
+    _columns: LandingColumns,
+) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
     Err(Failure::message(format!(
         "--output: '{}' is a Parquet file, but this chta was built without Parquet: build it with `cargo install --path . --features parquet`, or \
          give a name that ends in .csv",

@@ -79,7 +79,7 @@ impl From<ExperimentError> for Failure {
     fn from(error: ExperimentError) -> Self {
         match error {
             ExperimentError::Trials(error) => error.into(),
-            ExperimentError::NoUncertainty => Self::message(format!("--experiment: {error}")),
+            ExperimentError::NoUncertainty { .. } | ExperimentError::NoErrors => Self::message(format!("--experiment: {error}")),
             ExperimentError::Replans => {
                 Self::message(format!("--experiment: {}: add --policy open-loop", ExperimentError::REPLANS))
             }

@@ -9,6 +9,8 @@ use chta::{
     terrain::MapProjection,
 };
 
+use serde::Serialize;
+
 use super::{
     Failure,
     args::Format,
@@ -134,6 +136,14 @@ impl<'a> Files<'a> {
             self.0.push((file, geojson.into_bytes()));
             self.0.extend(prj);
         }
+    }
+
+    /// Adds data that is written as JSON; without any the file is not written.
+    pub(crate) fn json<T: Serialize>(&mut self, file: Option<Pending<'a>>, data: Option<&T>) -> Result<(), Failure> {
+        if let (Some(file), Some(data)) = (file, data) {
+            self.0.push((file, serde_json::to_vec(data)?));
+        }
+        Ok(())
     }
 
     /// Adds a path in time.

@@ -1,9 +1,9 @@
 //! Pictures of whole answers.
 
 use super::{
-    Caption, ConeWidthFigure, ConeWidthPoint, ErrorQuantiles, LandingBoxes, LandingErrorFigure, TradeAxis, TradeCell, TradeFigure,
+    Caption, ConeWidthFigure, ConeWidthPoint, ErrorQuantiles, LandingBoxes, LandingErrorFigure, SensitivityBar, SensitivityFigure, Success, TradeAxis, TradeCell, TradeFigure,
 };
-use crate::report::{ConeWidthAnswer, ErrorRecord, SweptKeyRecord, TradeAnswer, TradeRow, WorstDriftAnswer, with_unit};
+use crate::report::{ConeWidthAnswer, ErrorRecord, SensitivityAnswer, SweptKeyRecord, TradeAnswer, TradeRow, WorstDriftAnswer, with_unit};
 
 fn quantiles(count: usize, error: &ErrorRecord) -> ErrorQuantiles {
     let [mean, q05, q25, q50, q75, q95, max] = error.each().map(|number| number.unwrap_or(0.0));
@@ -39,6 +39,23 @@ impl ConeWidthFigure {
             errors: quantiles(width.hops.unwrap_or(0) * answer.flights as usize, &width.all_landings_with_speed),
         });
         Self { caption: Caption::new(format!("Cone width: {title}"), words), points: points.collect() }
+    }
+}
+
+impl SensitivityFigure {
+    /// What each error costs, from the one that costs most.
+    pub fn of(answer: &SensitivityAnswer, title: &str) -> Self {
+        let [low, high] = answer.success_rate_ci95;
+        let words = format!(
+            "each error in turn taken away, on the same draws; {}, {} trials each, seed {}; with all errors {:.4} reach the goal (95 % interval \
+             {low:.4} to {high:.4})",
+            answer.policy, answer.trials, answer.seed, answer.success_rate
+        );
+        let bars = answer.errors.iter().map(|row| SensitivityBar {
+            name: row.setting(),
+            cost: Success { rate: row.cost, low: row.cost_ci95[0], high: row.cost_ci95[1] },
+        });
+        Self { caption: Caption::new(format!("What each error costs: {title}"), words), bars: bars.collect() }
     }
 }
 

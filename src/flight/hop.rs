@@ -7,6 +7,7 @@ use super::{
     draws::{HopDraws, TrialDraws, Wanted},
 };
 use crate::ballistics::Arc;
+use crate::quantity::Angle;
 use crate::ground::{ContactFailure, FirstContact, Flight, HeightField, LiftoffVelocity, Realization, TouchdownState};
 
 /// A command, and its planned landing.
@@ -34,6 +35,24 @@ impl<C> Command<C> {
 pub(crate) struct Errors {
     uncertainty: Uncertainty,
     wanted: Wanted,
+}
+
+/// The errors of one hop as drawn, in their units.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct DrawnErrors {
+    /// Actual minus commanded take-off speed, m/s; a speed below zero is set to zero.
+    pub takeoff_speed_m_s: f64,
+    /// Actual minus commanded elevation of the take-off velocity.
+    pub takeoff_angle: Angle,
+    /// Actual minus commanded heading, clockwise; zero along a chain.
+    pub heading: Angle,
+    /// Bounce-and-roll displacement after the landing, along the heading and to its left, m.
+    pub drift_m: [f64; 2],
+    /// Believed minus actual position before the hop, m: on a chain along it and to its left, on a map east and north; zero unless the
+    /// policy asks for the position.
+    pub position_m: [f64; 2],
+    /// Added to the friction coefficient of the whole ground, one draw a trial.
+    pub friction_coefficient: f64,
 }
 
 /// The result of one hop.
@@ -72,6 +91,27 @@ impl Errors {
     /// The errors of the position estimate, m: along and across, or east and north.
     pub(crate) fn position_m(&self, draws: &HopDraws) -> [f64; 2] {
         draws.position.map(|normal| self.uncertainty.position_sigma_m * normal)
+    }
+
+    /// The bounce-and-roll displacement after the landing, m: along the heading and to its left.
+    pub(crate) fn drift_m(&self, draws: &HopDraws) -> [f64; 2] {
+        let u = &self.uncertainty;
+        [u.drift_along_sigma_m * draws.drift[0], u.drift_across_sigma_m * draws.drift[1]]
+    }
+
+    /// The errors of a hop of this commanded speed, on ground with this error of its friction.
+    pub(crate) fn drawn(&self, speed_m_s: f64, draws: &HopDraws, friction_coefficient: f64) -> DrawnErrors {
+        let u = &self.uncertainty;
+        let [elevation, heading] = draws.direction;
+        DrawnErrors {
+            takeoff_speed_m_s: speed_m_s * u.takeoff_speed_sigma_fraction * draws.speed[1]
+                + u.takeoff_speed_sigma_m_s * draws.speed[0],
+            takeoff_angle: Angle::from_radians(u.takeoff_angle_sigma.radians() * elevation),
+            heading: Angle::from_radians(u.heading_sigma.radians() * heading),
+            drift_m: self.drift_m(draws),
+            position_m: self.position_m(draws),
+            friction_coefficient,
+        }
     }
 
     /// The realization of a trial's ground; `None` if all trials have the nominal ground.
@@ -126,8 +166,7 @@ impl Errors {
             ground.first_contact(from, liftoff, aim)
         };
         let touchdown = TouchdownState::after(liftoff, flight.time_s, ground.gravity_m_s2());
-        let u = &self.uncertainty;
-        let displacement_m = [u.drift_along_sigma_m * draws.drift[0], u.drift_across_sigma_m * draws.drift[1]];
+        let displacement_m = self.drift_m(draws);
         let held = match &flight.support_facet {
             // A hopper that does not move has no contact to check.
             _ if liftoff.stays() => Ok(()),

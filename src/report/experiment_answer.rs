@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ErrorRecord, text::Sheet};
+use super::{ErrorRecord, SensitivityAnswer, text::Sheet};
 use crate::{
     path::Hop,
     uncertainty::{
@@ -22,6 +22,8 @@ pub enum ExperimentAnswer {
     ConeWidth(ConeWidthAnswer),
     /// Of `risk-trade`.
     RiskTrade(RiskTradeAnswer),
+    /// Of `sensitivity`.
+    Sensitivity(SensitivityAnswer),
 }
 
 /// The answer of `worst-drift`.

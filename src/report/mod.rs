@@ -1,5 +1,6 @@
 //! Results as plain data; text, JSON, CSV and GeoJSON are views of it.
 
+mod advice;
 mod check_answer;
 mod compare_answer;
 mod document;
@@ -18,6 +19,8 @@ mod proof_record;
 mod propellant_record;
 mod reliability_record;
 mod require_answer;
+mod sensitivity_answer;
+mod sigma_margins;
 mod simulate_answer;
 mod size_answer;
 mod stated;
@@ -25,6 +28,7 @@ mod text;
 mod trade_answer;
 mod trajectory;
 
+pub use advice::AdviceRecord;
 pub use check_answer::{
     CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, JourneyEnd, MissRecord, PairsAnswer, verdict_of,
 };
@@ -49,10 +53,13 @@ pub use path_record::{
 pub use plan_answer::{PlanAnswer, plan_text};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
 pub use propellant_record::{PropellantShortage, StoresRecord};
-pub use reliability_record::{ReliablePathRecord, reliable_paths_text};
+pub use reliability_record::{ReliablePathRecord, SuccessEstimate, reliable_paths_text};
 pub use require_answer::{RequireAnswer, RequireTry};
+pub use sensitivity_answer::{SensitivityAnswer, SensitivityRow};
+pub use sigma_margins::SigmaMarginsRecord;
 pub use simulate_answer::{
-    EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord, simulate_text,
+    EllipseRecord, ErrorRecord, FailureRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord, SuccessRequirement,
+    simulate_text,
 };
 pub use size_answer::{SizeAnswer, SizeRecord};
 pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};

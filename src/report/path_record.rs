@@ -9,6 +9,8 @@ use super::{
     hop_margins::HopMarginsRecord,
     limit_pair::LimitPair,
     propellant_record::{StoresRecord, stores_columns},
+    reliability_record::SuccessEstimate,
+    sigma_margins::SigmaMarginsRecord,
     stated::stated,
 };
 use crate::{
@@ -61,6 +63,9 @@ pub struct HopRecord {
     pub map: Option<MapRecord>,
     /// By how much it keeps each limit.
     pub margins: HopMarginsRecord,
+    /// The same in standard deviations, where errors are given and the estimate was wanted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub margins_sigma: Option<SigmaMarginsRecord>,
     /// For a machine that takes its commands in steps: what the command was aimed at.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub aim: Option<AimRecord>,
@@ -213,6 +218,9 @@ pub struct TotalsRecord {
     /// Propellant beyond what the machine has, if the path takes too much.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub propellant_short_kg: Option<f64>,
+    /// How reliably the path is flown, where errors are given and the estimate was wanted.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<SuccessEstimate>,
     /// Whether the machine has a key of propulsion, so that text states the delta-v. The scenario says so, JSON does not: false after
     /// reading.
     #[serde(skip)]
@@ -253,6 +261,7 @@ impl HopRecord {
                 heading_true_deg: projection.map(|projection| heading_true_deg(projection, takeoff, hop.heading_deg)),
             }),
             margins: HopMarginsRecord(hop.margins),
+            margins_sigma: None,
             stores: hop.into(),
             aim: hop.aim.as_ref().map(AimRecord::from),
         }
@@ -273,6 +282,7 @@ impl From<&Totals> for TotalsRecord {
             propellant_kg: totals.propellant.map(|propellant| unsigned_zero(propellant.used_kg)),
             mass_end_kg: totals.propellant.map(|propellant| propellant.mass_end_kg),
             propellant_short_kg: totals.propellant_short_kg(),
+            estimate: None,
             propulsive: totals.propulsive,
         }
     }

@@ -3,7 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{CheckAnswer, FurtherMeans, HopRecord, ReliablePathRecord, TotalsRecord, check_text, path_text, reliable_paths_text};
+use super::{
+    CheckAnswer, FurtherMeans, HopRecord, ReliablePathRecord, TotalsRecord, check_text, path_text, reliable_paths_text,
+    sigma_margins::edge_text,
+};
 
 /// The answer of a plan: the check, the path, its totals.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -30,7 +33,11 @@ pub fn plan_text(answer: &PlanAnswer, means: FurtherMeans<'_>) -> String {
         text.push('\n');
         text.push_str(&path_text(&answer.path, totals));
     }
-    text.push_str(&reliable_paths_text(&answer.reliable_paths));
+    text.push_str(&reliable_paths_text(&answer.reliable_paths, answer.check.hops));
+    if let Some(estimate) = answer.totals.as_ref().and_then(|totals| totals.estimate) {
+        text.push_str(&estimate.text(&answer.reliable_paths, answer.check.hops));
+        text.push_str(&edge_text(answer.path.iter().map(|hop| (hop.hop, hop.margins_sigma.as_ref()))));
+    }
     if answer.verified == Some(true) {
         let of = if answer.check.propellant_shortage.is_some() { " of a hop" } else { "" };
         text.push_str("verified: every hop was flown again by direct simulation and breaks no limit");

@@ -4,7 +4,35 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::text::Sheet;
-use crate::graph::ReliablePath;
+use crate::{graph::ReliablePath, uncertainty::Policy};
+
+/// How reliably a path is flown, by fixed trials: the same for every question, whatever the seed of the scenario.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SuccessEstimate {
+    /// The share of 512 fixed trials that reach the goal under `success_policy`. No product of the hops: friction and heights are one draw
+    /// of a whole trial, and a replanned hop is another hop.
+    pub success_estimated: f64,
+    /// The policy of these trials.
+    pub success_policy: Policy,
+}
+
+impl SuccessEstimate {
+    /// The estimate as text, with what fewer hops would cost: `rows` are the front that the path of `hops` hops was chosen from.
+    pub(super) fn text(&self, rows: &[ReliablePathRecord], hops: Option<u64>) -> String {
+        let Self { success_estimated, success_policy } = self;
+        let mut sheet = Sheet::default();
+        sheet.line(format_args!("\nestimated success: {success_estimated:.4} under {success_policy}, by 512 fixed trials"));
+        let fewer = rows.iter().filter(|row| hops.is_some_and(|hops| row.hops < hops));
+        let least = fewer.filter_map(|row| Some((row.hops, row.estimated_success?))).find(|(_, share)| share < success_estimated);
+        if let Some((hops, share)) = least {
+            let hops = if hops == 1 { "1 hop".to_owned() } else { format!("{hops} hops") };
+            sheet.line(format_args!(
+                "fewer hops would cost reliability: the most reliable path of {hops} has an estimated success of {share:.4}"
+            ));
+        }
+        sheet.into_text()
+    }
+}
 
 /// The most reliable path of one hop count.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,18 +54,19 @@ impl ReliablePathRecord {
     }
 }
 
-/// The rows as text; empty without rows.
-pub fn reliable_paths_text(rows: &[ReliablePathRecord]) -> String {
+/// The rows as text; empty without rows. `hops`: those of the path that was chosen.
+pub fn reliable_paths_text(rows: &[ReliablePathRecord], hops: Option<u64>) -> String {
     let mut sheet = Sheet::default();
     if !rows.is_empty() {
         sheet.line(format_args!(
-            "\nmost reliable path by hops (the last is the one above)\n{:>6}{:>20}{:>12}",
+            "\nmost reliable path by hops\n{:>6}{:>20}{:>12}",
             "hops", "estimated success", "effort"
         ));
     }
     for row in rows {
         let estimate = row.estimated_success.map_or("-".to_owned(), |share| format!("{share:.4}"));
-        sheet.line(format_args!("{:>6}{estimate:>20}{:>12.4}", row.hops, row.effort));
+        let chosen = if hops == Some(row.hops) { "  <- chosen" } else { "" };
+        sheet.line(format_args!("{:>6}{estimate:>20}{:>12.4}{chosen}", row.hops, row.effort));
     }
     sheet.into_text()
 }

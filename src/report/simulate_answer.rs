@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{CheckAnswer, FurtherMeans, check_text, text::Sheet};
+use super::{AdviceRecord, CheckAnswer, FurtherMeans, check_text, text::Sheet};
 use crate::uncertainty::{
     ErrorSummary, LandingEllipse, LandingSummary, OutcomeCounts, Policy, RatePoint, Summary, TrialOutcome, Wilson,
 };
@@ -20,6 +20,70 @@ pub struct SimulateAnswer {
     /// Both policies on the same draws, if requested.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub compare: Vec<SimulationRecord>,
+    /// Whether the success that was asked for is shown.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub requirement: Option<SuccessRequirement>,
+    /// After a success rate below 0.9: which keys of the scenario would help most, the first before the others.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub advice: Vec<AdviceRecord>,
+}
+
+/// A success rate that trials have to show.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SuccessRequirement {
+    /// The success that was asked for.
+    pub success_min: f64,
+    /// Whether the lower end of the 95 % interval, under the policy of the scenario, is at least that.
+    pub success_min_shown: bool,
+}
+
+impl SimulateAnswer {
+    /// The answer to whether this success is shown; `None` asks for nothing. Without trials nothing is shown.
+    #[must_use]
+    pub fn requiring(mut self, success_min: Option<f64>) -> Self {
+        let low = self.simulation.as_ref().map(|simulation| simulation.success_rate_ci95[0]);
+        self.requirement = success_min.map(|success_min| SuccessRequirement {
+            success_min,
+            success_min_shown: low.is_some_and(|low| low >= success_min),
+        });
+        self
+    }
+
+    /// Whether the success that was asked for, if any was, is shown.
+    pub fn shows_success(&self) -> bool {
+        self.requirement.is_none_or(|requirement| requirement.success_min_shown)
+    }
+
+    /// What failed most often, and what would help, as lines.
+    fn advice_text(&self) -> String {
+        let Some(simulation) = self.simulation.as_ref().filter(|_| !self.advice.is_empty()) else { return String::new() };
+        let mut text = String::new();
+        let failed = simulation.trials - simulation.outcomes.reached;
+        if let Some(most) = simulation.failures.first() {
+            let FailureRecord { outcome, hop, count } = most;
+            text.push_str(&format!("\nmost frequent failure: {outcome} at hop {hop}, {count} of {failed} trials that fail\n"));
+        }
+        for advice in &self.advice {
+            text.push_str(&format!("advice: {}\n", advice.sentence()));
+        }
+        text
+    }
+
+    /// Whether the success that was asked for is shown, as a sentence.
+    fn requirement_text(&self) -> Option<String> {
+        let SuccessRequirement { success_min, success_min_shown } = self.requirement?;
+        let SimulationRecord { success_rate, success_rate_ci95: [low, _], .. } = self.simulation.as_ref()?;
+        Some(if success_min_shown {
+            format!("a success of {success_min} is shown: the lower end of the 95 % interval is {low:.4}\n")
+        } else if *success_rate > success_min {
+            format!(
+                "a success of {success_min} is not shown: the lower end of the 95 % interval is {low:.4}, below it; more trials narrow the \
+                 interval\n"
+            )
+        } else {
+            format!("a success of {success_min} is not shown: the lower end of the 95 % interval is {low:.4}, below it\n")
+        })
+    }
 }
 
 /// The text of `chta simulate`.
@@ -33,12 +97,20 @@ pub fn simulate_text(answer: &SimulateAnswer, means: FurtherMeans<'_>) -> String
         text.push('\n');
         text.push_str(&record.text());
     }
+    text.push_str(&answer.advice_text());
+    if let Some(sentence) = answer.requirement_text() {
+        text.push('\n');
+        text.push_str(&sentence);
+    }
     text
 }
 
 /// The results of the trials of one policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulationRecord {
+    /// The number of the first trial, of trials flown in ranges; absent if it is 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub first_trial: u64,
     /// The number of trials flown.
     pub trials: u64,
     /// The seed of all draws.
@@ -51,12 +123,19 @@ pub struct SimulationRecord {
     pub success_rate_ci95: [f64; 2],
     /// The outcomes of the trials; they add up to `trials`.
     pub outcomes: OutcomeRecord,
+    /// The outcomes other than `reached` by the hop that ended the trial, the most frequent first.
+    pub failures: Vec<FailureRecord>,
     /// The number of hops flown, with or without a landing.
     pub hops_flown: u64,
     /// The landings by hop number: all planned hops, and any further hops flown.
     pub landings: Vec<LandingRecord>,
     /// The rate after each 1 000 trials, at most some hundred points, and at the end.
     pub convergence: Vec<RateRecord>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+const fn is_zero(number: &u64) -> bool {
+    *number == 0
 }
 
 /// Trials by outcome.
@@ -80,6 +159,31 @@ pub struct OutcomeRecord {
     pub hop_limit: u64,
     /// Its next hop took more propellant than it had left.
     pub out_of_propellant: u64,
+}
+
+/// Trials that failed in the same way at the same hop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct FailureRecord {
+    /// How they ended.
+    pub outcome: TrialOutcome,
+    /// The hop that ended them, from 1; 0 if they ended before any.
+    pub hop: u32,
+    /// How many.
+    pub count: u64,
+}
+
+impl FailureRecord {
+    /// All failures of some trials, the most frequent first.
+    fn rows(summary: &Summary) -> Vec<Self> {
+        let of_hop = |(hop, counts): (usize, &OutcomeCounts)| {
+            let hop = u32::try_from(hop).unwrap_or(u32::MAX);
+            let failed = counts.each().filter(|(outcome, count)| *outcome != TrialOutcome::Reached && *count > 0);
+            failed.map(|(outcome, count)| Self { outcome, hop, count }).collect::<Vec<_>>()
+        };
+        let mut rows: Vec<Self> = summary.ends.iter().enumerate().flat_map(of_hop).collect();
+        rows.sort_by(|a, b| b.count.cmp(&a.count).then(a.hop.cmp(&b.hop)).then(a.outcome.cmp(&b.outcome)));
+        rows
+    }
 }
 
 /// The landings of one hop number.
@@ -157,12 +261,14 @@ impl SimulationRecord {
         let last = summary.convergence.len().saturating_sub(1);
         let kept = |i: usize| (i + 1).is_multiple_of(every) || i == last;
         Self {
+            first_trial: summary.first_trial,
             trials: summary.trials,
             seed: summary.seed,
             policy: summary.policy,
             success_rate: summary.success.rate,
             success_rate_ci95: [summary.success.low, summary.success.high],
             outcomes: OutcomeRecord::new(&summary.outcomes),
+            failures: FailureRecord::rows(summary),
             hops_flown: summary.hops_flown,
             landings: landings.chain((flown + 1..=planned).map(none)).collect(),
             convergence: summary.convergence.iter().enumerate().filter(|(i, _)| kept(*i)).map(|(_, point)| point.into()).collect(),
@@ -193,6 +299,9 @@ impl SimulationRecord {
         ));
         let ended: Vec<_> =
             self.outcomes.each().filter(|(_, count)| *count > 0).map(|(name, count)| format!("{name} {count}")).collect();
+        if self.first_trial > 0 {
+            sheet.line(format_args!("the first of these trials has the number {}", self.first_trial));
+        }
         sheet.line(format_args!("outcomes: {}", ended.join(", ")));
         sheet.line(format_args!(
             "\n{} (m)\n{:>5}{:>11}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}",

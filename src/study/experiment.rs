@@ -2,16 +2,18 @@
 
 use serde::Serialize;
 
-use super::{Planned, SimulateError, dem_ground::dem_ground, front::FlownJourney, simulate::Flyer};
+use super::{Planned, SimulateError, dem_ground::dem_ground, front::FlownJourney, sensitivity::sensitivity, simulate::Flyer};
 #[cfg(feature = "plot")]
-use crate::figure::{ConeWidthFigure, FigureError, LandingErrorFigure, Picture, draw_cone_width, draw_landing_errors};
+use crate::figure::{
+    ConeWidthFigure, FigureError, LandingErrorFigure, Picture, SensitivityFigure, draw_cone_width, draw_landing_errors, draw_sensitivity,
+};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain},
     graph::{self, NodeSet, NodesError, Outcome, SearchError, SearchOptions, most_reliable_paths, search_most_reliable},
     hop::HopTest,
     path::{Hop, PathError, generate},
     progress::Progress,
-    report::{ConeWidthAnswer, RiskTradeAnswer, RiskTradeRow, TradedPath, WorstDriftAnswer},
+    report::{ConeWidthAnswer, RiskTradeAnswer, RiskTradeRow, SensitivityAnswer, TradedPath, WorstDriftAnswer},
     uncertainty::{
         Policy,
         experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
@@ -44,8 +46,16 @@ pub enum ExperimentError {
         problem: ConeProblem,
     },
     /// Trials of a scenario without errors.
-    #[error("risk-trade flies trials, but the scenario has no [uncertainty]: add its deviations and goal_tolerance_m")]
-    NoUncertainty,
+    #[error("{experiment} flies trials, but the scenario has no [uncertainty]: add its deviations and goal_tolerance_m")]
+    NoUncertainty {
+        /// The experiment.
+        experiment: Experiment,
+    },
+    /// No error to take away.
+    #[error(
+        "sensitivity takes each error away in turn, but [uncertainty] has no error above 0: give it one, such as takeoff_angle_sigma_deg = 0.5"
+    )]
+    NoErrors,
     /// Trials that do not follow their path.
     #[error("{}: set uncertainty.policy to \"open-loop\"", Self::REPLANS)]
     Replans,
@@ -84,6 +94,8 @@ pub enum ExperimentAnswer {
     ConeWidth(ConeWidthAnswer),
     /// Of [`Experiment::RiskTrade`].
     RiskTrade(RiskTradeAnswer),
+    /// Of [`Experiment::Sensitivity`].
+    Sensitivity(SensitivityAnswer),
 }
 
 impl ExperimentAnswer {
@@ -93,6 +105,7 @@ impl ExperimentAnswer {
             Self::WorstDrift(answer) => answer.text(),
             Self::ConeWidth(answer) => answer.text(),
             Self::RiskTrade(answer) => answer.text(),
+            Self::Sensitivity(answer) => answer.text(),
         }
     }
 
@@ -105,6 +118,7 @@ impl ExperimentAnswer {
         match self {
             Self::WorstDrift(answer) => Some(draw_landing_errors(&LandingErrorFigure::of_worst_drift(answer, title))),
             Self::ConeWidth(answer) => Some(draw_cone_width(&ConeWidthFigure::of(answer, title))),
+            Self::Sensitivity(answer) => Some(draw_sensitivity(&SensitivityFigure::of(answer, title))),
             Self::RiskTrade(_) => None,
         }
     }
@@ -144,6 +158,11 @@ pub fn experiment(
         Experiment::ConeWidth => ExperimentAnswer::ConeWidth(cone_widths(planned, &path.hops, seed, progress)?),
         Experiment::RiskTrade => {
             let answer = ExperimentAnswer::RiskTrade(risk_trade(planned, progress)?);
+            warnings.extend(keys.and_then(|keys| keys.warning()).map(str::to_owned));
+            answer
+        }
+        Experiment::Sensitivity => {
+            let answer = ExperimentAnswer::Sensitivity(sensitivity(planned, path, progress)?);
             warnings.extend(keys.and_then(|keys| keys.warning()).map(str::to_owned));
             answer
         }
@@ -196,7 +215,7 @@ fn mean_takeoff_width_deg(chain: &ConstrainedChain) -> f64 {
 fn risk_trade(planned: &Planned, progress: &dyn Progress) -> Result<RiskTradeAnswer, ExperimentError> {
     let Planned { case, test, ends: (start, goal), found, .. } = planned;
     let scenario = &case.scenario;
-    let keys = scenario.uncertainty.ok_or(ExperimentError::NoUncertainty)?;
+    let keys = scenario.uncertainty.ok_or(ExperimentError::NoUncertainty { experiment: Experiment::RiskTrade })?;
     if keys.policy == Policy::Replan {
         return Err(ExperimentError::Replans);
     }

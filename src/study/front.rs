@@ -11,7 +11,7 @@ use crate::{
     path::{HopPath, PathError, generate},
     progress::Progress,
     scenario::Scenario,
-    uncertainty::{Mission, Policy, Simulation},
+    uncertainty::{Mission, Policy, Simulation, TrialOptions, Uncertainty},
 };
 
 /// A journey whose paths are flown in trials.
@@ -30,6 +30,16 @@ pub(super) struct FlownJourney<'a> {
 impl FlownJourney<'_> {
     /// The trials along a path; replanned by these costs, if there are any.
     pub(super) fn simulation(&self, path: &HopPath, to_go: Option<&Arc<CostToGo>>) -> Result<Simulation, SimulateError> {
+        self.simulation_under(path, to_go, self.scenario.uncertainty.unwrap_or_default().errors)
+    }
+
+    /// The same under other errors than those of the scenario.
+    pub(super) fn simulation_under(
+        &self,
+        path: &HopPath,
+        to_go: Option<&Arc<CostToGo>>,
+        errors: Uncertainty,
+    ) -> Result<Simulation, SimulateError> {
         let (start, goal) = self.ends;
         let mission = match self.ground {
             None => Mission::along_chain(self.test.clone(), path.clone(), start, goal),
@@ -42,7 +52,7 @@ impl FlownJourney<'_> {
             Some(to_go) => mission.with_replanning(self.test.clone(), Arc::clone(to_go)),
             None => mission,
         };
-        Ok(Simulation::new(&mission, self.scenario.uncertainty.unwrap_or_default().errors)?)
+        Ok(Simulation::new(&mission, errors)?)
     }
 
     /// The costs by which trials replan over the nodes of an answer, with as many hops more than the fewest as its path has.
@@ -66,6 +76,19 @@ impl FlownJourney<'_> {
             *takeoffs = TakeoffScatter::OfPosition;
         }
         Ok(CostToGo::with_reliability(self.test, nodes, options, &reliability, progress)?)
+    }
+
+    /// The share of fixed trials of one path that reach the goal.
+    pub(super) fn success_of(
+        &self,
+        found: &graph::Answer,
+        path: &HopPath,
+        options: &TrialOptions,
+        progress: &dyn Progress,
+    ) -> Result<f64, SimulateError> {
+        let replans = options.policy == Policy::Replan;
+        let to_go = replans.then(|| self.costs_to_go(found, progress)).transpose()?.map(Arc::new);
+        Ok(self.simulation(path, to_go.as_ref())?.estimated_success(options, progress)?)
     }
 
     /// Estimates the success of the paths of a front, and takes the one to fly: [`preferred_path`].

@@ -9,10 +9,11 @@ use crate::{
         search_most_reliable,
     },
     hop::HopTest,
-    path::{HopPath, PathError, TooManyHops},
+    path::{Hop, HopPath, PathError, TooManyHops},
     progress::Progress,
-    report::CheckAnswer,
+    report::{CheckAnswer, SigmaMarginsRecord, SuccessEstimate},
     scenario::Scenario,
+    uncertainty::{HopScatter, Uncertainty},
 };
 
 /// Bounds on the fewest hops are proved, for every choice of points.
@@ -35,6 +36,14 @@ pub enum JourneyError {
     /// The trials that estimate the success of paths.
     #[error(transparent)]
     Trials(#[from] Box<SimulateError>),
+}
+
+/// How reliably a path is flown.
+#[derive(Clone, Debug)]
+pub(super) struct Estimate {
+    pub(super) success: SuccessEstimate,
+    /// Of each hop.
+    pub(super) margins: Vec<SigmaMarginsRecord>,
 }
 
 /// The result of a search, with bounds if a proof was requested.
@@ -89,6 +98,36 @@ impl Searched {
             graph::search_pairs(test, pairs, &case.scenario.search, progress)?
         };
         Ok(found.into_iter().map(|found| Self { found, reliable_paths: Vec::new(), proof: None }).collect())
+    }
+
+    /// How reliably the path of the answer is flown, under the policy of the scenario, and how its hops scatter; `None` without errors.
+    ///
+    /// A path of a front was estimated when it was chosen; another one is flown here.
+    pub(super) fn success_estimate(
+        &self,
+        test: &HopTest,
+        ends: (Station, Station),
+        case: &Case,
+        path: &HopPath,
+        progress: &dyn Progress,
+    ) -> Result<Option<Estimate>, JourneyError> {
+        let scenario = &case.scenario;
+        let Some(keys) = scenario.uncertainty.filter(|keys| keys.errors != Uncertainty::NONE) else { return Ok(None) };
+        let hops = self.found.hops();
+        let known = self.reliable_paths.iter().find(|path| Some(path.cost.hops()) == hops).and_then(|path| path.success);
+        let ground = dem_ground(case).map_err(Box::new)?;
+        let journey = FlownJourney { scenario, test, ends, ground: ground.as_ref() };
+        let success_estimated = match known {
+            Some(share) => share,
+            None => journey.success_of(&self.found, path, &keys.options(), progress).map_err(Box::new)?,
+        };
+        let success = SuccessEstimate { success_estimated, success_policy: keys.policy };
+        let scatters = journey.simulation(path, None).map_err(Box::new)?.hop_scatters();
+        let friction = scenario.surface.constant_friction().map(|cone| cone.coefficient());
+        // The half-angle of the cone is atan(mu).
+        let friction_rad = friction.map_or(0.0, |mu| keys.errors.friction_sigma / (1.0 + mu * mu));
+        let of_hop = |(hop, scatter): (&Hop, &HopScatter)| SigmaMarginsRecord::new(&hop.margins, scatter, friction_rad.to_degrees());
+        Ok(Some(Estimate { success, margins: path.hops.iter().zip(&scatters).map(of_hop).collect() }))
     }
 
     /// The answer as plain data together with the path that it found, whose hops may be too many to list. An answer whose path no

@@ -36,6 +36,7 @@ mod record;
 mod require;
 mod schema;
 mod sense;
+mod sensitivity;
 mod simulate;
 pub mod slice;
 mod trade;

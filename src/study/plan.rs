@@ -21,6 +21,8 @@ pub struct PlanOptions {
     pub proof: Option<Proof>,
     /// Whether the path is flown again by direct simulation, against every limit.
     pub verify: bool,
+    /// Whether the success of the path is estimated by fixed trials, where the scenario has errors.
+    pub estimate: bool,
 }
 
 /// Why there is no plan. That there is no path is an answer, not an error.
@@ -110,11 +112,18 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
         Defect::unless_passed(&case.prepared.execute(path, ends))?;
     }
     let warnings = path.as_ref().map(|path| case.scenario.path_warnings(path)).unwrap_or_default();
+    let flown = path.as_ref().filter(|_| options.estimate);
+    let estimate = flown.map(|path| searched.success_estimate(&test, ends, &case, path, progress)).transpose()?.flatten();
+    let mut hops = path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default();
+    for (hop, margins) in hops.iter_mut().zip(estimate.iter().flat_map(|estimate| &estimate.margins)) {
+        hop.margins_sigma = Some(*margins);
+    }
+    let estimate = estimate.map(|estimate| estimate.success);
     let answer = PlanAnswer {
         check,
         verified: (options.verify && path.is_some()).then_some(true),
-        path: path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default(),
-        totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
+        path: hops,
+        totals: path.as_ref().map(|path| TotalsRecord { estimate, ..TotalsRecord::from(&path.totals) }),
         reliable_paths: ReliablePathRecord::rows(&searched.reliable_paths),
     };
     Ok(Planned { case, test, ends, found: searched.found, path, answer, warnings })

@@ -48,10 +48,12 @@ mod landing_tally;
 mod mission;
 mod options;
 mod outcome;
+mod paired;
 mod quantiles;
 mod rates;
 mod record;
 mod replan;
+mod scatter;
 mod simulation;
 mod summary;
 mod tally;
@@ -59,14 +61,16 @@ mod trial;
 mod wilson;
 
 pub use crate::{
-    flight::{Uncertainty, UncertaintyProblem},
+    flight::{DrawnErrors, ErrorKey, Uncertainty, UncertaintyProblem},
     ground::LiftoffVelocity,
 };
 pub use mission::Mission;
 pub use options::{MissionPoint, Observer, SimulationError, TrialOptions};
 pub use outcome::{OutcomeCounts, Policy, TrialOutcome};
+pub use paired::PairedDifference;
 pub use quantiles::QuantileSketch;
 pub use record::{HopRecord, Trajectory, TrialRecord};
+pub use scatter::HopScatter;
 pub use simulation::{FlightEnd, Simulation};
 pub use summary::{ErrorSummary, LandingEllipse, LandingSummary, RatePoint, Summary};
 pub use tally::{MergeProblem, Tally};

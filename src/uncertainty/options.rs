@@ -22,7 +22,7 @@ pub struct TrialOptions {
     pub goal_tolerance_m: f64,
     /// Stop once half the width of the success rate's 95 % interval is at most this; checked after every 1 000 trials of this part.
     pub until_half_width: Option<f64>,
-    /// Trials with a number below this are kept with all their hops.
+    /// The first trials of this part, as many as this, are kept with all their hops.
     pub trajectories: u64,
 }
 

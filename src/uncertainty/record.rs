@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector2};
 
-use super::TrialOutcome;
+use super::{DrawnErrors, TrialOutcome};
 use crate::quantity::Angle;
 
 /// One flown hop of one trial.
@@ -35,6 +35,8 @@ pub struct HopRecord {
     pub rest_m: Point3<f64>,
     /// Horizontal distance from the planned landing to the position of rest, m.
     pub error_m: f64,
+    /// The errors that were drawn for it.
+    pub drawn: DrawnErrors,
     /// Whether it met the ground.
     pub landed: bool,
     /// The outcome of the trial, if this is its last hop.
@@ -92,6 +94,17 @@ pub struct TrialRecord {
     pub end_m: Point3<f64>,
     /// Horizontal distance from the end to the goal, m.
     pub goal_distance_m: f64,
+}
+
+impl TrialRecord {
+    /// The hop that ended the trial, from 1: the last one flown, or the one that was not flown because its take-off slid or its propellant
+    /// was not there; 0 if the trial ended before any.
+    pub const fn last_hop(&self) -> u32 {
+        match self.outcome {
+            TrialOutcome::SlidAtTakeoff | TrialOutcome::OutOfPropellant => self.hops.saturating_add(1),
+            _ => self.hops,
+        }
+    }
 }
 
 /// A trial with all its hops.

@@ -31,13 +31,13 @@ const STRETCH: u64 = 50;
 #[derive(Debug)]
 pub struct Simulation {
     mission: Mission,
-    uncertainty: Uncertainty,
-    ground_and_plan: GroundAndPlan,
+    pub(super) uncertainty: Uncertainty,
+    pub(super) ground_and_plan: GroundAndPlan,
 }
 
 /// The mission's ground and its plan.
 #[derive(Debug)]
-enum GroundAndPlan {
+pub(super) enum GroundAndPlan {
     Chain(ChainGround, Plan<ChainPosition>),
     Map(DemGround, Plan<MapPosition>),
 }
@@ -89,6 +89,21 @@ impl Simulation {
         Ok(Summary { trajectories, ..statistics.summary(options.policy, options.seed) })
     }
 
+    /// Flies the trials once for both: the summary of [`run`](Self::run) and the tally of [`tally`](Self::tally).
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_and_tally(
+        &self,
+        options: &TrialOptions,
+        observer: &mut dyn Observer,
+        progress: &dyn Progress,
+    ) -> Result<(Summary, Tally), SimulationError> {
+        let (statistics, trajectories) = self.flown(options, observer, progress)?;
+        let summary = Summary { trajectories, ..statistics.summary(options.policy, options.seed) };
+        Ok((summary, self.tallied(options, statistics)))
+    }
+
     /// Flies the trials as [`run`](Self::run) does, and returns their statistics in a form that merges with that of other trials:
     /// those before [`first_trial`](TrialOptions::first_trial), and those after.
     ///
@@ -101,6 +116,11 @@ impl Simulation {
         progress: &dyn Progress,
     ) -> Result<Tally, SimulationError> {
         let (statistics, _) = self.flown(options, observer, progress)?;
+        Ok(self.tallied(options, statistics))
+    }
+
+    /// Statistics with what they are of.
+    fn tallied(&self, options: &TrialOptions, statistics: Statistics) -> Tally {
         let of = Flights {
             mission: self.mission.digest(),
             errors: format!("{:?}", self.uncertainty),
@@ -109,7 +129,7 @@ impl Simulation {
             hop_limit: self.hop_limit(options),
             goal_tolerance_m: options.goal_tolerance_m,
         };
-        Ok(Tally { of, statistics })
+        Tally { of, statistics }
     }
 
     fn flown(
@@ -241,14 +261,14 @@ impl Simulation {
                 let mut draws = TrialDraws::seeded(options.seed);
                 let mut flown = Flown::default();
                 for trial in first..end.min(first + STRETCH) {
-                    let keep = keep_records || trial < options.trajectories;
+                    let keep = keep_records || trial - options.first_trial < options.trajectories;
                     fly(&mut ground, &mut draws, plan, &rules, trial, keep, &mut flown);
                 }
                 flown
             };
             let stretches: Vec<Flown> = starts.into_par_iter().map(stretch).collect();
             for flown in &stretches {
-                add(flown, &mut tally, &mut trajectories, options.trajectories);
+                add(flown, &mut tally, &mut trajectories, options.first_trial.saturating_add(options.trajectories));
                 if keep_records {
                     tell(flown, observer);
                 }
@@ -264,11 +284,11 @@ impl Simulation {
     }
 }
 
-/// Adds the results of some trials, in their order.
-fn add(flown: &Flown, tally: &mut Statistics, trajectories: &mut Vec<Trajectory>, wanted: u64) {
+/// Adds the results of some trials, in their order; those with a number below `wanted_end` with all their hops.
+fn add(flown: &Flown, tally: &mut Statistics, trajectories: &mut Vec<Trajectory>, wanted_end: u64) {
     for trial in &flown.trials {
-        tally.trial(trial.trial, trial.outcome, trial.hops);
-        if trial.trial < wanted {
+        tally.trial(trial);
+        if trial.trial < wanted_end {
             let hops = flown.hops.iter().filter(|hop| hop.trial == trial.trial).copied().collect();
             trajectories.push(Trajectory { trial: *trial, hops });
         }

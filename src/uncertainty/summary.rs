@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Point2};
 
-use super::{OutcomeCounts, Policy, Trajectory, Wilson};
+use super::{OutcomeCounts, Policy, QuantileSketch, Trajectory, Wilson};
 use crate::quantity::Angle;
 
 /// The statistics of many trials, bit-identical for any number of threads.
@@ -12,10 +12,16 @@ pub struct Summary {
     pub policy: Policy,
     /// The seed of all draws.
     pub seed: u64,
+    /// The number of the first trial; 0 unless they are a later part of a run.
+    pub first_trial: u64,
     /// The number of trials flown; fewer than requested if the success rate was precise enough before.
     pub trials: u64,
     /// The outcomes; their sum is `trials`.
     pub outcomes: OutcomeCounts,
+    /// The outcomes by the hop that ended the trial ([`TrialRecord::last_hop`](super::TrialRecord::last_hop)); 0: before any.
+    pub ends: Vec<OutcomeCounts>,
+    /// Of the trials that stopped off the goal: horizontal distances from it, m.
+    pub missed_m: QuantileSketch,
     /// The success rate with its 95 % interval.
     pub success: Wilson,
     /// The number of hops flown, landed or not.

@@ -6,7 +6,7 @@ use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    LandingSummary, OutcomeCounts, Policy, Summary, TrialOutcome, Wilson, landing_tally::LandingTally, rates::Rates, trial::Landing,
+    LandingSummary, OutcomeCounts, Policy, QuantileSketch, Summary, TrialOutcome, TrialRecord, Wilson, landing_tally::LandingTally, rates::Rates, trial::Landing,
 };
 
 /// The statistics of the trials with some numbers, of one mission with its errors and options.
@@ -57,6 +57,10 @@ pub(super) struct Statistics {
     /// Half-open ranges of the numbers of all trials, ascending, with gaps between them.
     trials: Vec<Range<u64>>,
     outcomes: OutcomeCounts,
+    /// By the number of the hop that ended the trial; 0: before any.
+    ends: Vec<OutcomeCounts>,
+    /// Of the trials that stopped off the goal: how far.
+    missed_m: QuantileSketch,
     hops_flown: u64,
     landings: Vec<LandingTally>,
     rates: Rates,
@@ -144,12 +148,21 @@ impl Statistics {
         Wilson::of(self.reached_goal(), self.outcomes.total())
     }
 
-    pub(super) fn trial(&mut self, trial: u64, outcome: TrialOutcome, hops: u32) {
+    pub(super) fn trial(&mut self, record: &TrialRecord) {
+        let TrialRecord { trial, outcome, hops, .. } = *record;
         match self.trials.last_mut() {
             Some(last) if last.end == trial => last.end += 1,
             _ => self.trials.push(trial..trial + 1),
         }
         self.outcomes.count(outcome);
+        let ended = usize::try_from(record.last_hop()).unwrap_or(usize::MAX);
+        if self.ends.len() <= ended {
+            self.ends.resize(ended + 1, OutcomeCounts::default());
+        }
+        self.ends[ended].count(outcome);
+        if outcome == TrialOutcome::Missed {
+            self.missed_m.add(record.goal_distance_m);
+        }
         self.hops_flown += u64::from(hops);
         self.rates.add(trial, outcome == TrialOutcome::Reached);
     }
@@ -182,6 +195,11 @@ impl Statistics {
             joins
         });
         self.outcomes += other.outcomes;
+        self.ends.resize(self.ends.len().max(other.ends.len()), OutcomeCounts::default());
+        for (mine, theirs) in self.ends.iter_mut().zip(&other.ends) {
+            *mine += *theirs;
+        }
+        self.missed_m.merge(&other.missed_m);
         self.hops_flown = self.hops_flown.saturating_add(other.hops_flown);
         self.landings.resize_with(self.landings.len().max(other.landings.len()), LandingTally::default);
         for (mine, theirs) in self.landings.iter_mut().zip(&other.landings) {
@@ -196,8 +214,11 @@ impl Statistics {
         Summary {
             policy,
             seed,
+            first_trial: self.trials.first().map_or(0, |first| first.start),
             trials: self.outcomes.total(),
             outcomes: self.outcomes,
+            ends: self.ends.clone(),
+            missed_m: self.missed_m.clone(),
             success: self.success(),
             hops_flown: self.hops_flown,
             landings: self.landings(),

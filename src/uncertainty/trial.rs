@@ -2,7 +2,7 @@
 
 use nalgebra::{Point2, Point3};
 
-use super::{HopRecord, Policy, TrialOutcome, TrialRecord, replan::Replan};
+use super::{DrawnErrors, HopRecord, Policy, TrialOutcome, TrialRecord, replan::Replan};
 use crate::{
     ballistics::{delta_v_of_m_s, propellant_kg},
     flight::{Command, Errors, FlownHop, HopDraws, TrialDraws},
@@ -93,7 +93,9 @@ pub(super) fn fly<G: FirstContact>(
     keep_hops: bool,
     flown: &mut Flown,
 ) {
+    let mut friction = 0.0;
     if let Some(realization) = rules.errors.realization(draws, trial) {
+        friction = realization.friction;
         ground.realize(realization);
     }
     draws.begin(trial);
@@ -121,7 +123,8 @@ pub(super) fn fly<G: FirstContact>(
         let ended = journey.land(&liftoff, &command.aim, hop, |landing, hop| {
             flown.landings.extend(landing);
             if keep_hops {
-                flown.hops.push(HopRecord { trial, ..hop() });
+                let drawn = rules.errors.drawn(command.speed_m_s, &drawn, friction);
+                flown.hops.push(HopRecord { trial, drawn, ..hop() });
             }
         });
         if let Some(outcome) = ended {
@@ -219,6 +222,7 @@ impl<G: FirstContact> Journey<'_, G> {
             contact_m: self.end_of_flight(&flown.end, &from, liftoff, flown.time_s, landed),
             rest_m,
             error_m,
+            drawn: DrawnErrors::default(),
             landed,
             outcome,
         };

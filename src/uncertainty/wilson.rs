@@ -1,7 +1,7 @@
 //! A proportion with its confidence interval.
 
 /// The standard normal's 97.5 % quantile, to the nearest double.
-const Z_95: f64 = 1.959_963_984_540_054;
+pub(super) const Z_95: f64 = 1.959_963_984_540_054;
 
 /// A proportion of successes with its 95 % interval by Wilson's score.
 ///

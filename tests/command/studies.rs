@@ -94,7 +94,7 @@ fn hop_check_and_plan_answer_as_the_command() {
             assert_eq!(of_study(&own, "check", &checked.warnings, answer), of_command("check", name, settings, &[]), "{name}");
         }
         let case = case(name, &[], Commands::OfTheMachine);
-        let planned = plan(&case, PlanOptions { proof: None, verify: true }, &()).unwrap();
+        let planned = plan(&case, PlanOptions { verify: true, estimate: true, ..PlanOptions::default() }, &()).unwrap();
         assert_eq!(
             of_study(&case, "plan", &planned.warnings, &planned.answer),
             of_command("plan", name, &[], &["--verify"]),
@@ -187,7 +187,7 @@ fn experiments_answer_as_the_command() {
     let replans = refused("rolling_surely", &["uncertainty.policy=replan"]);
     assert!(matches!(replans, ExperimentError::Replans), "{replans}");
     let errorless = refused("simple", &[]);
-    assert!(matches!(errorless, ExperimentError::NoUncertainty), "{errorless}");
+    assert!(matches!(errorless, ExperimentError::NoUncertainty { .. }), "{errorless}");
     let wall = plan(&case("wall", &[], Commands::OfTheMachine), PlanOptions::default(), &()).unwrap();
     assert!(experiment(&wall, Experiment::WorstDrift, DriftReading::default(), &()).unwrap().answer.is_none());
 }

@@ -10,7 +10,7 @@ use chta::{
     chain::csv::{CHAIN_COLUMNS, PAIRS_COLUMNS},
     quantity::unit_of,
     report::{
-        CompareAnswer, FanAnswer, HopRecord, MapKnowledge, TradeAnswer, landings::CsvLandings, trajectory_columns, write_paths_csv,
+        CompareAnswer, FanAnswer, HopRecord, MapKnowledge, TradeAnswer, landings::{CsvLandings, LandingColumns}, trajectory_columns, write_paths_csv,
     },
     scenario::CATALOGUE,
     study::SchemaKind,
@@ -23,7 +23,7 @@ const HEAD: &str = "# Keys and columns\n\nWhat every JSON document and every CSV
      where it has a meaning; \"or null\": it is always there, without a value.\n";
 
 /// Columns that are no key of a JSON document: table, column, meaning.
-const ALONE: [(&str, &str, &str); 36] = [
+const ALONE: [(&str, &str, &str); 44] = [
     ("path", "goal", "number of the goal, from 1; in the paths of `map` alone"),
     ("trajectory", "time_s", "time since the start"),
     ("trajectory", "hop", "number of the hop, from 1"),
@@ -56,6 +56,22 @@ const ALONE: [(&str, &str, &str); 36] = [
     ("landings", "planned", "planned landing"),
     ("landings", "landing", "first contact with the ground"),
     ("landings", "rest", "position of rest, after bounce and roll"),
+    ("landings", "drawn_takeoff_speed_m_s", "actual minus commanded take-off speed, as drawn; with `--draws`"),
+    ("landings", "drawn_takeoff_angle_deg", "actual minus commanded take-off angle, as drawn; with `--draws`"),
+    ("landings", "drawn_heading_deg", "actual minus commanded heading, clockwise, as drawn; with `--draws`"),
+    ("landings", "drawn_drift_along_m", "displacement after the landing along the heading, as drawn; with `--draws`"),
+    ("landings", "drawn_drift_across_m", "displacement after the landing to the left of the heading, as drawn; with `--draws`"),
+    (
+        "landings",
+        "drawn_position_x_m",
+        "believed minus actual position before the hop, along the chain or east on a map, as drawn; with `--draws`",
+    ),
+    (
+        "landings",
+        "drawn_position_y_m",
+        "believed minus actual position before the hop, to the left or north on a map, as drawn; with `--draws`",
+    ),
+    ("landings", "drawn_friction_coefficient", "added to the friction coefficient in this trial, as drawn; with `--draws`"),
     ("trade", "KEY", "value of the varied key, one column for each"),
     ("landings", "x", "along the chain, or easting on a map"),
     ("landings", "y", "to the left of the plane of travel, or northing on a map"),
@@ -190,8 +206,9 @@ fn tables(records: &Records) -> Vec<(&'static str, &'static str, Vec<String>, Ve
     let trade: TradeAnswer = serde_json::from_value(json!({ "vary": [{ "key": "KEY", "values": [1.0] }], "rows": [row] })).unwrap();
     let fan = json!({ "from_m": [0.0, 0.0], "headings": 1, "length_m": 1.0, "rays": [made_up("FanRecord")] });
     let fan: FanAnswer = serde_json::from_value(fan).unwrap();
-    let mut landings = header(|out| CsvLandings::begin(out, MapKnowledge::Nothing).map(drop));
-    for column in header(|out| CsvLandings::begin(out, MapKnowledge::Projection).map(drop)) {
+    let columns = |known| header(|out| CsvLandings::begin(out, LandingColumns { known, drawn: true }).map(drop));
+    let mut landings = columns(MapKnowledge::Nothing);
+    for column in columns(MapKnowledge::Projection) {
         if !landings.contains(&column) {
             landings.push(column);
         }

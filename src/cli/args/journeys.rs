@@ -11,7 +11,7 @@ use clap::Args as ClapArgs;
 
 use super::{
     super::{Failure, load::OwnKey},
-    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, along_chain, cell_count, max_gib,
+    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, along_chain, cell_count, max_gib, success_share, trial_number,
 };
 
 /// Options of commands that fly a path.
@@ -149,8 +149,17 @@ pub(crate) struct SimulateArgs {
     /// Stop once the success rate's 95 % interval is at most 2 W wide; checked every 1000 trials [default: fly all trials]
     #[arg(long, value_name = "W", allow_negative_numbers = true)]
     pub(crate) until_half_width: Option<f64>,
+    /// Number of the first trial: ranges of trials can be flown apart, and their tallies merge to that of all
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = trial_number, conflicts_with = "experiment", allow_negative_numbers = true)]
+    pub(crate) first_trial: u64,
+    /// Success to be shown: exit status 1 where the lower end of the 95 % interval is below it [default: none]
+    #[arg(long, value_name = "P", value_parser = success_share, conflicts_with = "experiment", allow_negative_numbers = true)]
+    pub(crate) success_min: Option<f64>,
+    /// Tally of the trials (JSON) to write, which the library merges with those of other ranges
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["experiment", "compare"])]
+    pub(crate) tally: Option<PathBuf>,
     /// Experiment to run instead: worst-drift (the paper's), cone-width (the paper's claim), risk-trade (hops against
-    /// reliability) [default: none]
+    /// reliability), sensitivity (what each error costs) [default: none]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["compare", "until_half_width"])]
     pub(crate) experiment: Option<String>,
     /// How worst-drift interprets the paper: noise-at-landing, noise-in-flight, farthest-from-goal [default: noise-at-landing]
@@ -159,6 +168,9 @@ pub(crate) struct SimulateArgs {
     /// One row per landing, .csv or .parquet; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// The errors that were drawn for each hop, beside its landing
+    #[arg(long, requires = "output")]
+    pub(crate) draws: bool,
     /// Picture of the trials (SVG or PNG): trajectories, landing errors, outcomes, convergence
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
@@ -278,7 +290,13 @@ impl SimulateArgs {
 
     /// What is wanted beyond the keys of the scenario.
     pub(crate) const fn options(&self) -> SimulateOptions {
-        SimulateOptions { compare: self.compare, until_half_width: self.until_half_width }
+        SimulateOptions {
+            compare: self.compare,
+            until_half_width: self.until_half_width,
+            first_trial: self.first_trial,
+            success_min: self.success_min,
+            tally: self.tally.is_some(),
+        }
     }
 
     /// Whether the landings go to standard output, in place of the answer.
@@ -309,14 +327,14 @@ impl SimulateArgs {
         let experiment = named(&Experiment::ALL, Experiment::name, name, "--experiment")?;
         let reading = self.reading.as_deref().map(|reading| named(&DriftReading::ALL, DriftReading::name, reading, "--reading"));
         let reading = reading.transpose()?.unwrap_or_default();
-        let trades = experiment == Experiment::RiskTrade;
+        let flies = experiment.flies_trials();
         let without_effect = [
             ("--output", self.output.is_some()),
             ("--reading", self.reading.is_some() && experiment != Experiment::WorstDrift),
-            ("--trials", self.trials.is_some() && !trades),
-            ("--policy", self.policy.is_some() && !trades),
-            ("--threads", self.answer.threads != 0 && !trades),
-            ("--plot", self.plot.is_some() && trades),
+            ("--trials", self.trials.is_some() && !flies),
+            ("--policy", self.policy.is_some() && !flies),
+            ("--threads", self.answer.threads != 0 && !flies),
+            ("--plot", self.plot.is_some() && experiment == Experiment::RiskTrade),
         ];
         match without_effect.into_iter().find(|(_, given)| *given) {
             Some((option, _)) => {

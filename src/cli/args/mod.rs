@@ -178,6 +178,17 @@ fn cell_count(text: &str) -> Result<usize, String> {
         .ok_or_else(|| format!("found `{text}`, expected a whole number of cells from 1 to {MOST}, such as {DEFAULT_BUDGET_CELLS}"))
 }
 
+/// Reads the number of a trial.
+fn trial_number(text: &str) -> Result<u64, String> {
+    text.trim().parse().map_err(|_| format!("found `{text}`, expected the number of a trial: a whole number from 0"))
+}
+
+/// Reads a share of successful trials.
+fn success_share(text: &str) -> Result<f64, String> {
+    let share = text.trim().parse().ok().filter(|share| *share > 0.0 && *share <= 1.0);
+    share.ok_or_else(|| format!("found `{text}`, expected a share above 0 and at most 1, such as 0.95"))
+}
+
 /// Reads `VALUE` or `none`.
 fn no_data_rule(text: &str) -> Result<NoDataRule, String> {
     if text.eq_ignore_ascii_case("none") {

@@ -33,7 +33,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     let geojson = GeoJsonFile::begin(args.geojson.as_deref(), loaded.case.prepared.projection.as_ref())?;
     let mut table = Table::begin(args.output.as_deref(), TableFormat::Csv)?;
     let in_time = TrajectoryFile::begin(&args.trajectory)?;
-    let options = PlanOptions { proof: args.prove.proof(), verify: args.verify };
+    let options = PlanOptions { proof: args.prove.proof(), verify: args.verify, estimate: true };
     let planned = plan(&loaded.case, options, &Progress::new(args.common.quiet))?;
     output::warn_all(args.common.quiet, &planned.warnings);
     let views = Views {

@@ -34,7 +34,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     output::check_folder(&args.output)?;
     let mut folder = RunFolder::new(&args.output, args.trajectory.trajectory.as_deref())?;
     let in_time = TrajectoryFile::begin(&args.trajectory)?;
-    let options = PlanOptions { verify: true, ..PlanOptions::default() };
+    let options = PlanOptions { verify: true, estimate: true, ..PlanOptions::default() };
     let planned = Arc::new(plan(&loaded.case, options, &Progress::new(args.quiet))?);
     output::warn_all(args.quiet, &planned.warnings);
     folder.trajectory(in_time, &planned)?;

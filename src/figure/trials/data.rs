@@ -110,6 +110,24 @@ pub struct SimulationFigure {
     pub outcomes: Vec<OutcomeBars>,
 }
 
+/// What each error costs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensitivityFigure {
+    /// The caption.
+    pub caption: Caption,
+    /// One for each error, from the top.
+    pub bars: Vec<SensitivityBar>,
+}
+
+/// What one error costs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensitivityBar {
+    /// The error, such as `takeoff_angle_sigma_deg = 0.5`.
+    pub name: String,
+    /// The success rate without it minus that with it, -1 to 1, with its 95 % interval.
+    pub cost: Success,
+}
+
 /// The landing error against the width of the cones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConeWidthFigure {

@@ -8,6 +8,7 @@ mod data;
 mod diagram;
 mod flown;
 mod outcomes;
+mod sensitivity;
 
 #[cfg(test)]
 #[expect(clippy::cast_precision_loss, reason = "counts of trials in made-up figures are small")]
@@ -15,7 +16,7 @@ mod tests;
 
 pub use data::{
     ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, LandingBoxes, LandingErrorFigure,
-    OutcomeBars, SimulationFigure, Success,
+    OutcomeBars, SensitivityBar, SensitivityFigure, SimulationFigure, Success,
 };
 
 use super::{
@@ -105,6 +106,14 @@ pub fn draw_convergence(caption: &Caption, bars: &[OutcomeBars]) -> Result<Pictu
 /// None today; [`FigureError`] as for the other pictures.
 pub fn draw_cone_width(figure: &ConeWidthFigure) -> Result<Picture, FigureError> {
     alone(&figure.caption, |sheet, top| Ok(cone_width::draw(sheet, &figure.points, top)))
+}
+
+/// Draws what each error costs: a horizontal bar for each with its 95 % interval, from the top as given.
+///
+/// # Errors
+/// None today; [`FigureError`] as for the other pictures.
+pub fn draw_sensitivity(figure: &SensitivityFigure) -> Result<Picture, FigureError> {
+    alone(&figure.caption, |sheet, top| Ok(sensitivity::draw(sheet, &figure.bars, top)))
 }
 
 /// A picture of one panel.

@@ -2,14 +2,14 @@
 
 use std::io::{self, Write};
 
-use super::{FIRST_COLUMNS, LandingRow, LandingWriter, TRUE_HEADING, number_columns};
+use super::{DRAWN_COLUMNS, FIRST_COLUMNS, LandingColumns, LandingRow, LandingWriter, TRUE_HEADING, number_columns};
 use crate::report::MapKnowledge;
 
 /// Landings as CSV, with a header even without landings.
 #[derive(Debug)]
 pub struct CsvLandings<W: Write> {
     writer: csv::Writer<W>,
-    known: MapKnowledge,
+    columns: LandingColumns,
 }
 
 impl<W: Write> CsvLandings<W> {
@@ -17,11 +17,12 @@ impl<W: Write> CsvLandings<W> {
     ///
     /// # Errors
     /// An error of the file system.
-    pub fn begin(out: W, known: MapKnowledge) -> io::Result<Self> {
+    pub fn begin(out: W, columns: LandingColumns) -> io::Result<Self> {
         let mut writer = csv::Writer::from_writer(out);
-        let heading = (known == MapKnowledge::Projection).then_some(&TRUE_HEADING);
-        writer.write_record(FIRST_COLUMNS.iter().chain(number_columns(known)).chain(heading))?;
-        Ok(Self { writer, known })
+        let heading = (columns.known == MapKnowledge::Projection).then_some(&TRUE_HEADING);
+        let drawn = DRAWN_COLUMNS.iter().filter(|_| columns.drawn);
+        writer.write_record(FIRST_COLUMNS.iter().chain(number_columns(columns.known)).chain(heading).chain(drawn))?;
+        Ok(Self { writer, columns })
     }
 }
 
@@ -34,8 +35,11 @@ impl<W: Write> LandingWriter for CsvLandings<W> {
         for number in row.numbers {
             self.writer.write_field(number.to_string())?;
         }
-        if self.known == MapKnowledge::Projection {
+        if self.columns.known == MapKnowledge::Projection {
             self.writer.write_field(row.heading_true_deg.map(|heading| heading.to_string()).unwrap_or_default())?;
+        }
+        for number in row.drawn.iter().filter(|_| self.columns.drawn) {
+            self.writer.write_field(number.to_string())?;
         }
         self.writer.write_record(None::<&[u8]>)?;
         Ok(())

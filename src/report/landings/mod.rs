@@ -46,9 +46,32 @@ pub struct LandingRow {
     pub outcome: &'static str,
     /// The numbers, in the order of [`number_columns`].
     pub numbers: [f64; NUMBERS],
+    /// The errors drawn for the hop, in the order of [`DRAWN_COLUMNS`].
+    pub drawn: [f64; DRAWN_COLUMNS.len()],
     /// The heading from true north at the take-off, on a map of a known projection; absent at a pole.
     pub heading_true_deg: Option<f64>,
 }
+
+/// The columns of a table of landings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LandingColumns {
+    /// How the landings are located on a map.
+    pub known: MapKnowledge,
+    /// Whether the errors drawn for each hop stand beside its landing.
+    pub drawn: bool,
+}
+
+/// The errors drawn for a hop. On a chain a position is along it and to its left, on a map east and north.
+pub const DRAWN_COLUMNS: [&str; 8] = [
+    "drawn_takeoff_speed_m_s",
+    "drawn_takeoff_angle_deg",
+    "drawn_heading_deg",
+    "drawn_drift_along_m",
+    "drawn_drift_across_m",
+    "drawn_position_x_m",
+    "drawn_position_y_m",
+    "drawn_friction_coefficient",
+];
 
 /// The last column, on a map of a known projection.
 const TRUE_HEADING: &str = "heading_true_deg";
@@ -118,6 +141,16 @@ impl LandingRow {
             heading_true_deg: projection
                 .filter(|_| on_a_map)
                 .and_then(|projection| heading_true_deg(projection, takeoff, direction)),
+            drawn: [
+                record.drawn.takeoff_speed_m_s,
+                record.drawn.takeoff_angle.degrees(),
+                record.drawn.heading.degrees(),
+                record.drawn.drift_m[0],
+                record.drawn.drift_m[1],
+                record.drawn.position_m[0],
+                record.drawn.position_m[1],
+                record.drawn.friction_coefficient,
+            ],
             trial: record.trial,
             hop: record.hop,
             policy: policy.name(),

@@ -13,7 +13,7 @@ use parquet::{
     schema::types::Type,
 };
 
-use super::{FIRST_COLUMNS, LandingRow, LandingWriter, NUMBERS, TRUE_HEADING, number_columns};
+use super::{DRAWN_COLUMNS, FIRST_COLUMNS, LandingColumns, LandingRow, LandingWriter, NUMBERS, TRUE_HEADING, number_columns};
 use crate::report::MapKnowledge;
 
 /// Rows of one row group: some 10 MB in memory before they are written.
@@ -23,7 +23,7 @@ const ROWS_PER_GROUP: usize = 1 << 16;
 pub struct ParquetLandings<W: io::Write + Send> {
     writer: SerializedFileWriter<W>,
     waiting: Vec<LandingRow>,
-    known: MapKnowledge,
+    columns: LandingColumns,
 }
 
 impl<W: io::Write + Send> std::fmt::Debug for ParquetLandings<W> {
@@ -37,7 +37,7 @@ impl<W: io::Write + Send> ParquetLandings<W> {
     ///
     /// # Errors
     /// An error of the file system.
-    pub fn begin(out: W, known: MapKnowledge, words: &[(&str, String)]) -> io::Result<Self> {
+    pub fn begin(out: W, columns: LandingColumns, words: &[(&str, String)]) -> io::Result<Self> {
         let words = words.iter().map(|(key, value)| KeyValue::new((*key).to_owned(), value.clone())).collect();
         let properties = WriterProperties::builder()
             .set_key_value_metadata(Some(words))
@@ -45,8 +45,8 @@ impl<W: io::Write + Send> ParquetLandings<W> {
             .set_created_by(format!("chta {}", env!("CARGO_PKG_VERSION")))
             .build();
         let writer =
-            SerializedFileWriter::new(out, Arc::new(schema(known).map_err(other)?), Arc::new(properties)).map_err(other)?;
-        Ok(Self { writer, waiting: Vec::new(), known })
+            SerializedFileWriter::new(out, Arc::new(schema(columns).map_err(other)?), Arc::new(properties)).map_err(other)?;
+        Ok(Self { writer, waiting: Vec::new(), columns })
     }
 
     /// Writes the buffered rows as one row group.
@@ -69,10 +69,14 @@ impl<W: io::Write + Send> ParquetLandings<W> {
             let numbers: Vec<_> = rows.iter().map(|row| row.numbers[number]).collect();
             column::<_, DoubleType>(&mut group, &numbers, None)?;
         }
-        if self.known == MapKnowledge::Projection {
+        if self.columns.known == MapKnowledge::Projection {
             let headings: Vec<_> = rows.iter().filter_map(|row| row.heading_true_deg).collect();
             let present: Vec<i16> = rows.iter().map(|row| i16::from(row.heading_true_deg.is_some())).collect();
             column::<_, DoubleType>(&mut group, &headings, Some(&present))?;
+        }
+        for number in (0..DRAWN_COLUMNS.len()).filter(|_| self.columns.drawn) {
+            let numbers: Vec<_> = rows.iter().map(|row| row.drawn[number]).collect();
+            column::<_, DoubleType>(&mut group, &numbers, None)?;
         }
         group.close().map(drop).map_err(other)
     }
@@ -102,7 +106,7 @@ fn column<W: io::Write + Send, T: DataType>(
 }
 
 /// The columns.
-fn schema(known: MapKnowledge) -> Result<Type, parquet::errors::ParquetError> {
+fn schema(LandingColumns { known, drawn }: LandingColumns) -> Result<Type, parquet::errors::ParquetError> {
     let [trial, hop, policy, outcome] = FIRST_COLUMNS;
     let plain = |name, physical| Type::primitive_type_builder(name, physical).with_repetition(Repetition::REQUIRED).build();
     let text = |name, repetition| {
@@ -125,6 +129,9 @@ fn schema(known: MapKnowledge) -> Result<Type, parquet::errors::ParquetError> {
         let heading = Type::primitive_type_builder(TRUE_HEADING, PhysicalType::DOUBLE);
         fields.push(Arc::new(heading.with_repetition(Repetition::OPTIONAL).build()?));
     }
+    for name in DRAWN_COLUMNS.iter().filter(|_| drawn) {
+        fields.push(Arc::new(plain(name, PhysicalType::DOUBLE)?));
+    }
     Type::group_type_builder("landing").with_fields(fields).build()
 }
 
@@ -146,13 +153,15 @@ mod tests {
     fn rows_and_metadata_are_read_back() {
         let file = tempfile::tempfile().unwrap();
         let words = [("seed", "7".to_owned()), ("scenario", "{}".to_owned())];
-        let mut writer = ParquetLandings::begin(file.try_clone().unwrap(), MapKnowledge::Projection, &words).unwrap();
+        let columns = LandingColumns { known: MapKnowledge::Projection, drawn: true };
+        let mut writer = ParquetLandings::begin(file.try_clone().unwrap(), columns, &words).unwrap();
         let row = |trial: u64| LandingRow {
             trial,
             hop: 2,
             policy: "replan",
             outcome: if trial.is_multiple_of(2) { "reached" } else { "" },
             numbers: std::array::from_fn(|i| i as f64 + trial as f64),
+            drawn: std::array::from_fn(|i| i as f64 - trial as f64),
             heading_true_deg: (!trial.is_multiple_of(3)).then_some(trial as f64),
         };
         let count = ROWS_PER_GROUP as u64 + 10;
@@ -172,6 +181,7 @@ mod tests {
             assert_eq!(read.get_string(3).ok().map_or("", |text| text.as_str()), row.outcome);
             assert_eq!(read.get_double(19).unwrap(), row.numbers[15]);
             assert_eq!(read.get_double(20).ok(), row.heading_true_deg);
+            assert_eq!(read.get_double(28).unwrap(), row.drawn[7]);
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::{
     path::HopPath,
     progress::Progress,
     study::{Planned, dem_ground::dem_ground, front::FlownJourney},
-    uncertainty::{Policy, Simulation, Summary, TrialOptions},
+    uncertainty::{Policy, Simulation, Summary, TrialOptions, Uncertainty},
 };
 
 /// A plan with everything that its trials need.
@@ -48,6 +48,11 @@ impl<'a> Flyer<'a> {
     /// The trials along a path over this ground.
     pub(super) fn simulation(&self, path: &HopPath) -> Result<Simulation, SimulateError> {
         self.journey().simulation(path, self.to_go.as_ref())
+    }
+
+    /// The same under other errors than those of the scenario; replanning counts on those of the scenario all the same.
+    pub(in crate::study) fn simulation_under(&self, path: &HopPath, errors: Uncertainty) -> Result<Simulation, SimulateError> {
+        self.journey().simulation_under(path, self.to_go.as_ref(), errors)
     }
 
     /// Flies the trials of a path over this ground.

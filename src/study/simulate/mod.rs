@@ -1,11 +1,13 @@
 //! How reliably a planned path is flown.
 
+mod advice;
 mod flyer;
 #[cfg(feature = "plot")]
 mod pictures;
 
 use std::{ops::Range, path::PathBuf, sync::Arc};
 
+use advice::advice;
 pub(super) use flyer::Flyer;
 
 use super::{Planned, TrialGround};
@@ -28,6 +30,12 @@ pub struct SimulateOptions {
     pub compare: bool,
     /// Stop once half the width of the success rate's 95 % interval is at most this.
     pub until_half_width: Option<f64>,
+    /// The number of the first trial: trials flown in ranges give the answer of the whole, once their tallies are merged.
+    pub first_trial: u64,
+    /// The success, above 0 and at most 1, that the trials have to show: the lower end of the 95 % interval is to be at least this.
+    pub success_min: Option<f64>,
+    /// Whether the tallies of the trials are kept.
+    pub tally: bool,
 }
 
 /// Why there is no simulation.
@@ -68,6 +76,8 @@ pub struct Trials {
     planned: Arc<Planned>,
     policies: Vec<Policy>,
     options: TrialOptions,
+    success_min: Option<f64>,
+    tally: bool,
     warnings: Vec<String>,
 }
 
@@ -78,6 +88,8 @@ pub struct Simulated {
     pub planned: Arc<Planned>,
     /// The results, policy by policy; empty without a path.
     pub summaries: Vec<Summary>,
+    /// The tallies, policy by policy; empty unless they were wanted.
+    pub tallies: Vec<Tally>,
     /// The answer as plain data.
     pub answer: SimulateAnswer,
     /// The warnings about the trials: settings without effect, deviations beyond sense.
@@ -109,8 +121,9 @@ impl Trials {
             let ground = TrialGround::of_chain(scenario, &planned.case.prepared, path.hops.len());
             scenario.trial_warnings(&policies, &ground)
         });
-        let options = TrialOptions { until_half_width: options.until_half_width, trajectories: KEPT_TRIALS, ..keys.options() };
-        Self { planned: Arc::clone(planned), policies, options, warnings: warnings.unwrap_or_default() }
+        let SimulateOptions { compare: _, until_half_width, first_trial, success_min, tally } = *options;
+        let options = TrialOptions { first_trial, until_half_width, trajectories: KEPT_TRIALS, ..keys.options() };
+        Self { planned: Arc::clone(planned), policies, options, success_min, tally, warnings: warnings.unwrap_or_default() }
     }
 
     /// The warnings about them.
@@ -145,7 +158,9 @@ impl Trials {
     pub fn answer_of(&self, tally: &Tally) -> SimulateAnswer {
         let hops = self.planned.path.as_ref().map_or(0, |path| path.hops.len());
         let simulation = Some(SimulationRecord::new(&tally.summary(), hops));
-        SimulateAnswer { check: self.planned.answer.check.clone(), simulation, compare: Vec::new() }
+        let advice = advice(&self.planned, &tally.summary());
+        SimulateAnswer { check: self.planned.answer.check.clone(), simulation, compare: Vec::new(), requirement: None, advice }
+            .requiring(self.success_min)
     }
 
     /// Flies them, policy by policy on the same draws.
@@ -153,25 +168,37 @@ impl Trials {
     /// # Errors
     /// [`SimulateError`].
     pub fn fly(self, observer: &mut dyn Observer, progress: &dyn Progress) -> Result<Simulated, SimulateError> {
-        let Self { planned, policies, options, warnings } = self;
+        let Self { planned, policies, options, success_min, tally, warnings } = self;
         let check = planned.answer.check.clone();
         let Some(path) = &planned.path else {
-            let answer = SimulateAnswer { check, simulation: None, compare: Vec::new() };
-            return Ok(Simulated { planned, summaries: Vec::new(), answer, warnings, ground: None });
+            let answer = SimulateAnswer { check, simulation: None, compare: Vec::new(), requirement: None, advice: Vec::new() };
+            let answer = answer.requiring(success_min);
+            return Ok(Simulated { planned, summaries: Vec::new(), tallies: Vec::new(), answer, warnings, ground: None });
         };
         let flyer = Flyer::new(&planned, &planned.found, &policies, progress)?;
         let simulation = flyer.simulation(path)?;
-        let of_policy = |policy| simulation.run(&TrialOptions { policy, ..options }, observer, progress);
-        let summaries: Vec<Summary> = policies.into_iter().map(of_policy).collect::<Result<_, _>>()?;
+        let (mut summaries, mut tallies) = (Vec::new(), Vec::new());
+        for policy in policies {
+            let options = TrialOptions { policy, ..options };
+            if tally {
+                let (summary, tally) = simulation.run_and_tally(&options, observer, progress)?;
+                summaries.push(summary);
+                tallies.push(tally);
+            } else {
+                summaries.push(simulation.run(&options, observer, progress)?);
+            }
+        }
         let hops = path.hops.len();
         let records: Vec<_> = summaries.iter().map(|summary| SimulationRecord::new(summary, hops)).collect();
         let own = planned.case.scenario.uncertainty.unwrap_or_default().policy;
         let simulation = summaries.iter().position(|summary| summary.policy == own).map(|i| records[i].clone());
+        let advice = summaries.iter().find(|summary| summary.policy == own).map(|summary| advice(&planned, summary)).unwrap_or_default();
         let compare = if records.len() > 1 { records } else { Vec::new() };
         Ok(Simulated {
             planned: Arc::clone(&planned),
             summaries,
-            answer: SimulateAnswer { check, simulation, compare },
+            tallies,
+            answer: SimulateAnswer { check, simulation, compare, requirement: None, advice }.requiring(success_min),
             warnings,
             ground: flyer.into_ground(),
         })

@@ -17,11 +17,18 @@ pub enum Experiment {
     ConeWidth,
     /// Hops against reliability: the most reliable path for every number of hops, estimated and flown.
     RiskTrade,
+    /// What each error costs: success without each in turn, on the same draws.
+    Sensitivity,
 }
 
 impl Experiment {
+    /// Whether it flies the trials of `[uncertainty]`.
+    pub const fn flies_trials(self) -> bool {
+        matches!(self, Self::RiskTrade | Self::Sensitivity)
+    }
+
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::WorstDrift, Self::ConeWidth, Self::RiskTrade];
+    pub const ALL: [Self; 4] = [Self::WorstDrift, Self::ConeWidth, Self::RiskTrade, Self::Sensitivity];
 
     /// The name.
     pub const fn name(self) -> &'static str {
@@ -29,6 +36,7 @@ impl Experiment {
             Self::WorstDrift => "worst-drift",
             Self::ConeWidth => "cone-width",
             Self::RiskTrade => "risk-trade",
+            Self::Sensitivity => "sensitivity",
         }
     }
 }

@@ -17,7 +17,7 @@ use crate::cli::{
     inputs,
     landings::{Listener, RowFile},
     load::load_journey,
-    output,
+    output::{self, Pending},
     progress::Progress,
     threads,
     trajectory::TrajectoryFile,
@@ -36,9 +36,10 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     // All options are checked before the search, which may take long.
     args.check(&loaded.case)?;
     loaded.ends()?;
-    let rows = args.output.as_deref().map(|path| RowFile::begin(path, &loaded)).transpose()?;
+    let rows = args.output.as_deref().map(|path| RowFile::begin(path, args.draws, &loaded)).transpose()?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let plot_map = output::begin_picture("--plot-map", args.plot_map.as_deref())?;
+    let tally = args.tally.as_deref().map(Pending::begin).transpose()?;
     let in_time = TrajectoryFile::begin(&args.trajectory)?;
     let quiet = args.common.quiet;
     let planned = Arc::new(plan(&loaded.case, PlanOptions::default(), &Progress::new(quiet))?);
@@ -51,10 +52,11 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let simulated = Listener::fly(trials, rows.filter(|_| planned.path.is_some()), &Progress::new(quiet))?;
     files.picture(plot, || simulated.picture())?;
     files.picture(plot_map, || simulated.landing_map())?;
+    files.json(tally, simulated.tallies.first())?;
     files.finish()?;
     if !args.lands_on_stdout() {
         let text = || simulate_text(&simulated.answer, further_means());
         show(args.answer.format, text, || loaded.document(DocumentKind::Simulate, &simulated.warnings, &simulated.answer))?;
     }
-    Ok(Answer::of(planned.is_traversable()))
+    Ok(Answer::of(planned.is_traversable() && simulated.answer.shows_success()))
 }
