@@ -8,8 +8,11 @@ use super::{
 };
 use crate::ground::{FirstContact, Realization};
 
-/// Draws in a search: an error of at most 0.02 for 99 % of hops.
-const DRAWS: u32 = 64;
+/// Draws of every hop in a search.
+pub(crate) const SEARCHED_DRAWS: u32 = 64;
+
+/// Draws of a hop that is reported.
+pub(crate) const REPORTED_DRAWS: u32 = 256;
 
 /// The most vertices or posts that all realizations of a ground with random heights may have together.
 const REALIZED_POINTS_MAX: usize = 1 << 22;
@@ -62,9 +65,9 @@ struct Errand<G> {
 }
 
 impl<G: FirstContact> HopTrials<G> {
-    /// Draws of these errors over a ground of this many vertices or posts.
-    pub(crate) fn new(ground: &G, uncertainty: &Uncertainty, points: usize) -> Self {
-        let draws = fixed_draws(DRAWS);
+    /// A number of draws of these errors over a ground that has this many points to realize.
+    pub(crate) fn new(ground: &G, uncertainty: &Uncertainty, points: usize, count: u32) -> Self {
+        let draws = fixed_draws(count);
         let errand = |uncertainty: Uncertainty| {
             let errors = Errors::new(uncertainty, false);
             let realizations = if uncertainty.height_sigma_m > 0.0 {

@@ -14,4 +14,4 @@ pub(crate) use draws::{HopDraws, TrialDraws};
 pub use error_key::ErrorKey;
 pub use hop::DrawnErrors;
 pub(crate) use hop::{Command, Errors, FlownHop};
-pub(crate) use hop_trials::{HopTrials, JudgedHop, Survival};
+pub(crate) use hop_trials::{HopTrials, JudgedHop, REPORTED_DRAWS, SEARCHED_DRAWS, Survival};

@@ -66,6 +66,10 @@ pub struct HopRecord {
     /// The same in standard deviations, where errors are given and the estimate was wanted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub margins_sigma: Option<SigmaMarginsRecord>,
+    /// The share of 256 fixed draws of its errors that this hop survives by itself, where errors are given and the estimate was wanted. The
+    /// product over the hops is not the success of the path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub success_estimated: Option<f64>,
     /// For a machine that takes its commands in steps: what the command was aimed at.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub aim: Option<AimRecord>,
@@ -262,6 +266,7 @@ impl HopRecord {
             }),
             margins: HopMarginsRecord(hop.margins),
             margins_sigma: None,
+            success_estimated: None,
             stores: hop.into(),
             aim: hop.aim.as_ref().map(AimRecord::from),
         }

@@ -42,10 +42,8 @@ impl SimulateAnswer {
     #[must_use]
     pub fn requiring(mut self, success_min: Option<f64>) -> Self {
         let low = self.simulation.as_ref().map(|simulation| simulation.success_rate_ci95[0]);
-        self.requirement = success_min.map(|success_min| SuccessRequirement {
-            success_min,
-            success_min_shown: low.is_some_and(|low| low >= success_min),
-        });
+        self.requirement = success_min
+            .map(|success_min| SuccessRequirement { success_min, success_min_shown: low.is_some_and(|low| low >= success_min) });
         self
     }
 

@@ -44,6 +44,8 @@ pub(super) struct Estimate {
     pub(super) success: SuccessEstimate,
     /// Of each hop.
     pub(super) margins: Vec<SigmaMarginsRecord>,
+    /// The success of each hop by itself.
+    pub(super) of_hops: Vec<f64>,
 }
 
 /// The result of a search, with bounds if a proof was requested.
@@ -122,12 +124,18 @@ impl Searched {
             None => journey.success_of(&self.found, path, &keys.options(), progress).map_err(Box::new)?,
         };
         let success = SuccessEstimate { success_estimated, success_policy: keys.policy };
-        let scatters = journey.simulation(path, None).map_err(Box::new)?.hop_scatters();
+        let simulation = journey.simulation(path, None).map_err(Box::new)?;
+        let scatters = simulation.hop_scatters();
         let friction = scenario.surface.constant_friction().map(|cone| cone.coefficient());
         // The half-angle of the cone is atan(mu).
         let friction_rad = friction.map_or(0.0, |mu| keys.errors.friction_sigma / (1.0 + mu * mu));
-        let of_hop = |(hop, scatter): (&Hop, &HopScatter)| SigmaMarginsRecord::new(&hop.margins, scatter, friction_rad.to_degrees());
-        Ok(Some(Estimate { success, margins: path.hops.iter().zip(&scatters).map(of_hop).collect() }))
+        let of_hop =
+            |(hop, scatter): (&Hop, &HopScatter)| SigmaMarginsRecord::new(&hop.margins, scatter, friction_rad.to_degrees());
+        Ok(Some(Estimate {
+            success,
+            margins: path.hops.iter().zip(&scatters).map(of_hop).collect(),
+            of_hops: simulation.hop_successes(),
+        }))
     }
 
     /// The answer as plain data together with the path that it found, whose hops may be too many to list. An answer whose path no

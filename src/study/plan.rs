@@ -2,12 +2,13 @@
 
 use std::io::{self, Write};
 
-use super::{Case, CaseError, Commands, JourneyError, Proof, journey::Searched};
+use super::{Case, CaseError, Commands, JourneyError, Proof, SimulateError, dem_ground::dem_ground, journey::Searched};
 #[cfg(feature = "plot")]
 use crate::figure::{FigureError, FigureInput, FigureTitle, Picture, draw};
 use crate::{
     chain::Station,
     graph,
+    ground::DemGround,
     hop::HopTest,
     path::{Execution, HopPath, TooManyHops, Violation},
     progress::Progress,
@@ -115,8 +116,9 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
     let flown = path.as_ref().filter(|_| options.estimate);
     let estimate = flown.map(|path| searched.success_estimate(&test, ends, &case, path, progress)).transpose()?.flatten();
     let mut hops = path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default();
-    for (hop, margins) in hops.iter_mut().zip(estimate.iter().flat_map(|estimate| &estimate.margins)) {
-        hop.margins_sigma = Some(*margins);
+    let of_hops = estimate.iter().flat_map(|estimate| estimate.margins.iter().zip(&estimate.of_hops));
+    for (hop, (margins, success)) in hops.iter_mut().zip(of_hops) {
+        (hop.margins_sigma, hop.success_estimated) = (Some(*margins), Some(*success));
     }
     let estimate = estimate.map(|estimate| estimate.success);
     let answer = PlanAnswer {
@@ -133,6 +135,14 @@ impl Planned {
     /// Whether there is a path that the machine can fly.
     pub fn is_traversable(&self) -> bool {
         self.answer.check.is_traversable()
+    }
+
+    /// The whole raster with its overlays, for flights in three dimensions; `None` if the terrain is a mesh or a chain.
+    ///
+    /// # Errors
+    /// [`SimulateError::Dem`] and [`SimulateError::Overlay`].
+    pub fn dem_ground(&self) -> Result<Option<DemGround>, SimulateError> {
+        dem_ground(&self.case)
     }
 
     /// Writes the path as CSV; only the header without a path.

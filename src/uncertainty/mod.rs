@@ -44,6 +44,7 @@
 
 mod exact_sum;
 pub mod experiments;
+mod hop_success;
 mod landing_tally;
 mod mission;
 mod options;

@@ -11,7 +11,8 @@ use clap::Args as ClapArgs;
 
 use super::{
     super::{Failure, load::OwnKey},
-    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, along_chain, cell_count, max_gib, success_share, trial_number,
+    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, along_chain, cell_count, max_gib,
+    success_share, trial_number,
 };
 
 /// Options of commands that fly a path.

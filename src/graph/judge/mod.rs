@@ -6,7 +6,7 @@ use super::{Edge, HopGraph, SearchOptions};
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice, loft_at_share},
     chain::Station,
-    flight::{Command, HopTrials, JudgedHop, Survival, Uncertainty, UncertaintyProblem},
+    flight::{Command, HopTrials, JudgedHop, SEARCHED_DRAWS, Survival, Uncertainty, UncertaintyProblem},
     ground::{ChainGround, ChainPosition, DemGround, MapPosition, Surface, heading_of},
     hop::{HopTest, SegmentHops, Split},
     quantity::{Angle, NodeId, SlopeInterval, normal_cdf},
@@ -122,9 +122,11 @@ impl Judge {
                         // Along a chain there is one plane of travel.
                         let errors = Uncertainty { heading_sigma: Angle::from_radians(0.0), ..*errors };
                         let ground = ChainGround::new(test.clone());
-                        Trials::Chain(HopTrials::new(&ground, &errors, test.chain().geometry().vertices().len()))
+                        Trials::Chain(HopTrials::new(&ground, &errors, test.chain().geometry().vertices().len(), SEARCHED_DRAWS))
                     }
-                    Some(ground) => Trials::Map(Box::new((HopTrials::new(ground.as_ref(), errors, 1), (**ground).clone()))),
+                    Some(ground) => {
+                        Trials::Map(Box::new((HopTrials::new(ground.as_ref(), errors, 1, SEARCHED_DRAWS), (**ground).clone())))
+                    }
                 };
                 (trials, *takeoffs, errors.position_sigma_m)
             }

@@ -26,7 +26,9 @@ pub(super) fn advice(planned: &Planned, summary: &Summary) -> Vec<AdviceRecord> 
     let advisor = Advisor { planned, summary };
     let all = match outcome {
         TrialOutcome::Reached => Vec::new(),
-        TrialOutcome::Missed => [advisor.policy(), advisor.risk(), advisor.takeoff_angle(), advisor.error(), advisor.tolerance()].into(),
+        TrialOutcome::Missed => {
+            [advisor.policy(), advisor.risk(), advisor.takeoff_angle(), advisor.error(), advisor.tolerance()].into()
+        }
         TrialOutcome::SlidAtTakeoff | TrialOutcome::SlidAtLanding => {
             [advisor.takeoff_angle(), advisor.risk(), advisor.policy(), advisor.friction()].into()
         }
@@ -67,14 +69,20 @@ impl Advisor<'_> {
         let weighs = scenario.risk != ReliabilityUse::Ignored;
         (weighs && scenario.search.takeoff != TakeoffChoice::MostReliable).then(|| {
             let found = format!("\"{}\"", scenario.search.takeoff.name());
-            record("search.takeoff_angle", found, Some("\"most-reliable\""), "of all angles the one that the most draws of the errors survive")
+            record(
+                "search.takeoff_angle",
+                found,
+                Some("\"most-reliable\""),
+                "of all angles the one that the most draws of the errors survive",
+            )
         })
     }
 
     fn risk(&self) -> Option<AdviceRecord> {
         let risk = self.planned.case.scenario.risk;
         (risk != ReliabilityUse::Traded).then(|| {
-            let reason = "more hops, each farther from its limits; without search.takeoff_angle the angles are then the most reliable";
+            let reason =
+                "more hops, each farther from its limits; without search.takeoff_angle the angles are then the most reliable";
             record("search.risk", format!("\"{}\"", risk.name()), Some("\"traded\""), reason)
         })
     }

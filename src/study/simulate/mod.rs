@@ -192,7 +192,8 @@ impl Trials {
         let records: Vec<_> = summaries.iter().map(|summary| SimulationRecord::new(summary, hops)).collect();
         let own = planned.case.scenario.uncertainty.unwrap_or_default().policy;
         let simulation = summaries.iter().position(|summary| summary.policy == own).map(|i| records[i].clone());
-        let advice = summaries.iter().find(|summary| summary.policy == own).map(|summary| advice(&planned, summary)).unwrap_or_default();
+        let advice =
+            summaries.iter().find(|summary| summary.policy == own).map(|summary| advice(&planned, summary)).unwrap_or_default();
         let compare = if records.len() > 1 { records } else { Vec::new() };
         Ok(Simulated {
             planned: Arc::clone(&planned),
