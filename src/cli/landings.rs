@@ -76,11 +76,7 @@ impl<'a> RowFile<'a> {
 
 /// A Parquet file, with scenario and seed in its metadata.
 #[cfg(feature = "parquet")]
-fn parquet<'a>(
-    path: &'a Path,
-    loaded: &Loaded,
-    columns: LandingColumns,
-) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
+fn parquet<'a>(path: &'a Path, loaded: &Loaded, columns: LandingColumns) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
     use chta::report::landings::ParquetLandings;
 
     let seed = loaded.case.scenario.uncertainty.unwrap_or_default().seed;

@@ -63,8 +63,8 @@ pub use scale::Scale;
 pub use spans::{Closure, GroundSpan, GroundUse};
 pub use trials::{
     ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, LandingBoxes, LandingErrorFigure,
-    OutcomeBars, SensitivityBar, SensitivityFigure, SimulationFigure, Success, draw_cone_width, draw_convergence, draw_flown, draw_landing_errors, draw_outcomes,
-    draw_sensitivity, draw_simulation,
+    OutcomeBars, SensitivityBar, SensitivityFigure, SimulationFigure, Success, draw_cone_width, draw_convergence, draw_flown,
+    draw_landing_errors, draw_outcomes, draw_sensitivity, draw_simulation,
 };
 
 use crate::{

@@ -1,9 +1,12 @@
 //! Pictures of whole answers.
 
 use super::{
-    Caption, ConeWidthFigure, ConeWidthPoint, ErrorQuantiles, LandingBoxes, LandingErrorFigure, SensitivityBar, SensitivityFigure, Success, TradeAxis, TradeCell, TradeFigure,
+    Caption, ConeWidthFigure, ConeWidthPoint, ErrorQuantiles, LandingBoxes, LandingErrorFigure, SensitivityBar, SensitivityFigure,
+    Success, TradeAxis, TradeCell, TradeFigure,
 };
-use crate::report::{ConeWidthAnswer, ErrorRecord, SensitivityAnswer, SweptKeyRecord, TradeAnswer, TradeRow, WorstDriftAnswer, with_unit};
+use crate::report::{
+    ConeWidthAnswer, ErrorRecord, SensitivityAnswer, SweptKeyRecord, TradeAnswer, TradeRow, WorstDriftAnswer, with_unit,
+};
 
 fn quantiles(count: usize, error: &ErrorRecord) -> ErrorQuantiles {
     let [mean, q05, q25, q50, q75, q95, max] = error.each().map(|number| number.unwrap_or(0.0));

@@ -7,8 +7,8 @@ use super::{
     draws::{HopDraws, TrialDraws, Wanted},
 };
 use crate::ballistics::Arc;
-use crate::quantity::Angle;
 use crate::ground::{ContactFailure, FirstContact, Flight, HeightField, LiftoffVelocity, Realization, TouchdownState};
+use crate::quantity::Angle;
 
 /// A command, and its planned landing.
 #[derive(Clone, Copy, Debug)]

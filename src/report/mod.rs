@@ -58,8 +58,8 @@ pub use require_answer::{RequireAnswer, RequireTry};
 pub use sensitivity_answer::{SensitivityAnswer, SensitivityRow};
 pub use sigma_margins::SigmaMarginsRecord;
 pub use simulate_answer::{
-    EllipseRecord, ErrorRecord, FailureRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord, SuccessRequirement,
-    simulate_text,
+    EllipseRecord, ErrorRecord, FailureRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord,
+    SuccessRequirement, simulate_text,
 };
 pub use size_answer::{SizeAnswer, SizeRecord};
 pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};

@@ -58,10 +58,7 @@ impl ReliablePathRecord {
 pub fn reliable_paths_text(rows: &[ReliablePathRecord], hops: Option<u64>) -> String {
     let mut sheet = Sheet::default();
     if !rows.is_empty() {
-        sheet.line(format_args!(
-            "\nmost reliable path by hops\n{:>6}{:>20}{:>12}",
-            "hops", "estimated success", "effort"
-        ));
+        sheet.line(format_args!("\nmost reliable path by hops\n{:>6}{:>20}{:>12}", "hops", "estimated success", "effort"));
     }
     for row in rows {
         let estimate = row.estimated_success.map_or("-".to_owned(), |share| format!("{share:.4}"));

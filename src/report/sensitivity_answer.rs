@@ -92,12 +92,7 @@ impl SensitivityAnswer {
         for row in &self.errors {
             let [low, high] = row.cost_ci95;
             let interval = format!("{low:.4} to {high:.4}");
-            sheet.line(format_args!(
-                "{:<wide$}{:>14.4}{:>10.4}{interval:>22}",
-                row.setting(),
-                row.success_rate_without,
-                row.cost
-            ));
+            sheet.line(format_args!("{:<wide$}{:>14.4}{:>10.4}{interval:>22}", row.setting(), row.success_rate_without, row.cost));
         }
         sheet.into_text()
     }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AdviceRecord, CheckAnswer, FurtherMeans, check_text, text::Sheet};
+use super::{AdviceRecord, CheckAnswer, FurtherMeans, HopRecord, check_text, text::Sheet};
 use crate::uncertainty::{
     ErrorSummary, LandingEllipse, LandingSummary, OutcomeCounts, Policy, RatePoint, Summary, TrialOutcome, Wilson,
 };
@@ -14,6 +14,9 @@ pub struct SimulateAnswer {
     /// Whether a path exists.
     #[serde(flatten)]
     pub check: CheckAnswer,
+    /// The hops of the path that the trials begin with, as planned; empty without a path.
+    #[serde(default)]
+    pub path: Vec<HopRecord>,
     /// The trials of the policy of the scenario.
     #[serde(flatten)]
     pub simulation: Option<SimulationRecord>,
@@ -42,10 +45,8 @@ impl SimulateAnswer {
     #[must_use]
     pub fn requiring(mut self, success_min: Option<f64>) -> Self {
         let low = self.simulation.as_ref().map(|simulation| simulation.success_rate_ci95[0]);
-        self.requirement = success_min.map(|success_min| SuccessRequirement {
-            success_min,
-            success_min_shown: low.is_some_and(|low| low >= success_min),
-        });
+        self.requirement = success_min
+            .map(|success_min| SuccessRequirement { success_min, success_min_shown: low.is_some_and(|low| low >= success_min) });
         self
     }
 

@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::{Planned, SimulateError, dem_ground::dem_ground, front::FlownJourney, sensitivity::sensitivity, simulate::Flyer};
 #[cfg(feature = "plot")]
 use crate::figure::{
-    ConeWidthFigure, FigureError, LandingErrorFigure, Picture, SensitivityFigure, draw_cone_width, draw_landing_errors, draw_sensitivity,
+    ConeWidthFigure, FigureError, LandingErrorFigure, Picture, SensitivityFigure, draw_cone_width, draw_landing_errors,
+    draw_sensitivity,
 };
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain},

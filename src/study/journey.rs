@@ -126,7 +126,8 @@ impl Searched {
         let friction = scenario.surface.constant_friction().map(|cone| cone.coefficient());
         // The half-angle of the cone is atan(mu).
         let friction_rad = friction.map_or(0.0, |mu| keys.errors.friction_sigma / (1.0 + mu * mu));
-        let of_hop = |(hop, scatter): (&Hop, &HopScatter)| SigmaMarginsRecord::new(&hop.margins, scatter, friction_rad.to_degrees());
+        let of_hop =
+            |(hop, scatter): (&Hop, &HopScatter)| SigmaMarginsRecord::new(&hop.margins, scatter, friction_rad.to_degrees());
         Ok(Some(Estimate { success, margins: path.hops.iter().zip(&scatters).map(of_hop).collect() }))
     }
 

@@ -6,7 +6,8 @@ use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    LandingSummary, OutcomeCounts, Policy, QuantileSketch, Summary, TrialOutcome, TrialRecord, Wilson, landing_tally::LandingTally, rates::Rates, trial::Landing,
+    LandingSummary, OutcomeCounts, Policy, QuantileSketch, Summary, TrialOutcome, TrialRecord, Wilson, landing_tally::LandingTally,
+    rates::Rates, trial::Landing,
 };
 
 /// The statistics of the trials with some numbers, of one mission with its errors and options.

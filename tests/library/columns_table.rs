@@ -10,7 +10,9 @@ use chta::{
     chain::csv::{CHAIN_COLUMNS, PAIRS_COLUMNS},
     quantity::unit_of,
     report::{
-        CompareAnswer, FanAnswer, HopRecord, MapKnowledge, TradeAnswer, landings::{CsvLandings, LandingColumns}, trajectory_columns, write_paths_csv,
+        CompareAnswer, FanAnswer, HopRecord, MapKnowledge, TradeAnswer,
+        landings::{CsvLandings, LandingColumns},
+        trajectory_columns, write_paths_csv,
     },
     scenario::CATALOGUE,
     study::SchemaKind,

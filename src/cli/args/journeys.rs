@@ -11,7 +11,8 @@ use clap::Args as ClapArgs;
 
 use super::{
     super::{Failure, load::OwnKey},
-    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, along_chain, cell_count, max_gib, success_share, trial_number,
+    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, along_chain, cell_count, max_gib,
+    success_share, trial_number,
 };
 
 /// Options of commands that fly a path.
@@ -133,6 +134,9 @@ pub(crate) struct PlanArgs {
 pub(crate) struct SimulateArgs {
     #[command(flatten)]
     pub(crate) journey: JourneyArgs,
+    /// Plan the scenario of a result (JSON) anew [default: its path is flown as it stands]
+    #[arg(long)]
+    pub(crate) plan_anew: bool,
     /// How many trials at most [default: the scenario's, or 10000]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) trials: Option<i64>,

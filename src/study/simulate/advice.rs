@@ -7,7 +7,7 @@ use crate::{
     quantity::format_number,
     report::AdviceRecord,
     study::Planned,
-    uncertainty::{ErrorKey, Policy, Summary, TrialOutcome},
+    uncertainty::{ErrorKey, Policy, Summary, TrialOptions, TrialOutcome},
 };
 
 /// A success rate below this gets advice.
@@ -26,7 +26,9 @@ pub(super) fn advice(planned: &Planned, summary: &Summary) -> Vec<AdviceRecord> 
     let advisor = Advisor { planned, summary };
     let all = match outcome {
         TrialOutcome::Reached => Vec::new(),
-        TrialOutcome::Missed => [advisor.policy(), advisor.risk(), advisor.takeoff_angle(), advisor.error(), advisor.tolerance()].into(),
+        TrialOutcome::Missed => {
+            [advisor.policy(), advisor.risk(), advisor.takeoff_angle(), advisor.error(), advisor.tolerance()].into()
+        }
         TrialOutcome::SlidAtTakeoff | TrialOutcome::SlidAtLanding => {
             [advisor.takeoff_angle(), advisor.risk(), advisor.policy(), advisor.friction()].into()
         }
@@ -67,14 +69,20 @@ impl Advisor<'_> {
         let weighs = scenario.risk != ReliabilityUse::Ignored;
         (weighs && scenario.search.takeoff != TakeoffChoice::MostReliable).then(|| {
             let found = format!("\"{}\"", scenario.search.takeoff.name());
-            record("search.takeoff_angle", found, Some("\"most-reliable\""), "of all angles the one that the most draws of the errors survive")
+            record(
+                "search.takeoff_angle",
+                found,
+                Some("\"most-reliable\""),
+                "of all angles the one that the most draws of the errors survive",
+            )
         })
     }
 
     fn risk(&self) -> Option<AdviceRecord> {
         let risk = self.planned.case.scenario.risk;
         (risk != ReliabilityUse::Traded).then(|| {
-            let reason = "more hops, each farther from its limits; without search.takeoff_angle the angles are then the most reliable";
+            let reason =
+                "more hops, each farther from its limits; without search.takeoff_angle the angles are then the most reliable";
             record("search.risk", format!("\"{}\"", risk.name()), Some("\"traded\""), reason)
         })
     }
@@ -120,14 +128,15 @@ impl Advisor<'_> {
     }
 
     fn hop_limit(&self) -> Option<AdviceRecord> {
-        let limit = self.planned.case.scenario.uncertainty?.hop_limit?;
-        let reason = format!("trials end at the limit; the path has {} hops, and replanning takes more", self.hops().len());
+        let hops = self.hops().len();
+        let limit = self.planned.case.scenario.uncertainty?.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(hops));
+        let reason = format!("a greater one lets trials go on: the path has {hops} hops, and replanning takes more");
         Some(record("uncertainty.hop_limit", limit.to_string(), None, reason))
     }
 
     fn propellant(&self) -> Option<AdviceRecord> {
         let max_kg = self.planned.case.scenario.hopper.limits().propellant_max_kg?;
-        let reason = "replanned hops and errors take more than the plan".to_owned();
+        let reason = "with more of it, hops that replanning and errors add can be flown";
         Some(record("hopper.propellant_max_kg", format_number(max_kg), None, reason))
     }
 }
