@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AdviceRecord, CheckAnswer, FurtherMeans, check_text, text::Sheet};
+use super::{AdviceRecord, CheckAnswer, FurtherMeans, HopRecord, check_text, text::Sheet};
 use crate::uncertainty::{
     ErrorSummary, LandingEllipse, LandingSummary, OutcomeCounts, Policy, RatePoint, Summary, TrialOutcome, Wilson,
 };
@@ -14,6 +14,9 @@ pub struct SimulateAnswer {
     /// Whether a path exists.
     #[serde(flatten)]
     pub check: CheckAnswer,
+    /// The hops of the path that the trials begin with, as planned; empty without a path.
+    #[serde(default)]
+    pub path: Vec<HopRecord>,
     /// The trials of the policy of the scenario.
     #[serde(flatten)]
     pub simulation: Option<SimulationRecord>,

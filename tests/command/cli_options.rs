@@ -794,7 +794,7 @@ const COMPARE: [Trial; 8] = [
 ];
 
 /// Ground with all overlays, small enough for a test.
-const SIMULATE: [Trial; 24] = [
+const SIMULATE: [Trial; 29] = [
     ("--trajectory", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--trajectory", "t.csv"]),
     (
         "--step-s",
@@ -803,6 +803,11 @@ const SIMULATE: [Trial; 24] = [
     ),
     ("--start", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--start", "10"]),
     ("--goal", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--goal", "30"]),
+    ("--plan-anew", &["simulate", "other_path.json"], &["simulate", "other_path.json", "--plan-anew"]),
+    ("--first-trial", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--first-trial", "50"]),
+    ("--success-min", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--success-min", "0.5"]),
+    ("--tally", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--tally", "tally.json"]),
+    ("--draws", &["simulate", "errors.toml", "-o", "landings.csv"], &["simulate", "errors.toml", "-o", "landings.csv", "--draws"]),
     ("--trials", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--trials", "50"]),
     ("--seed", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--seed", "9"]),
     ("--policy", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--policy", "replan"]),
@@ -922,6 +927,12 @@ fn desk() -> Desk {
     desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
     desk.write("forward.csv", FORWARD_ONLY);
     desk.write("errors.toml", desk.read("scenario.toml") + ERRORS);
+    // A path that the scenario in it would not be planned with.
+    let planned = desk.json(&["plan", "errors.toml", "--set", "search.points_per_segment=0", "--set", "search.risk=ignored"]);
+    let risk = "\"risk\":\"ignored\"";
+    let result = planned.to_string();
+    assert!(result.contains(risk), "{result}");
+    desk.write("other_path.json", result.replace(risk, "\"risk\":\"traded\""));
     // Walls too steep to rest on around a pit: the least capability to cross it is found by splitting cells.
     desk.write("pit.csv", "x_m,z_m\n0,0\n10,0\n11,-3\n20,-3\n21,0\n40,0\n");
 

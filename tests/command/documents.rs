@@ -15,7 +15,7 @@ use crate::desk::chta;
 
 /// Commands whose answers have every part that an answer may have: found and refused, with proof, with trials, on maps with and without
 /// a projection, with propellant, with commands in steps, with risk.
-const COMMANDS: [&str; 43] = [
+const COMMANDS: [&str; 45] = [
     "hop data/scenarios/paper_76m.toml --from 0 --to 20",
     "hop data/scenarios/paper_76m.toml --from 0 --to 25",
     "hop data/scenarios/simple.toml",
@@ -51,6 +51,8 @@ const COMMANDS: [&str; 43] = [
     "simulate data/scenarios/paper_76m.toml --experiment worst-drift",
     "simulate data/scenarios/paper_76m.toml --experiment cone-width",
     "simulate data/scenarios/rolling_surely.toml --experiment risk-trade --trials 200",
+    "simulate data/scenarios/rolling_surely.toml --experiment sensitivity --trials 200",
+    "simulate data/scenarios/rolling_surely.toml --trials 100 --first-trial 50 --success-min 0.9 --set uncertainty.goal_tolerance_m=0.5",
     "require data/scenarios/paper_76m.toml --vary hopper.takeoff_speed_max_m_s --from 2 --to 20",
     "require data/scenarios/wall.toml --vary hopper.takeoff_speed_max_m_s --from 1 --to 2",
     "trade data/scenarios/paper_76m.toml --vary hopper.takeoff_speed_max_m_s=4:8:3 --vary hopper.landing_speed_max_m_s=4:8:2 --prove",

@@ -41,6 +41,8 @@ mod studies;
 mod takeoff_speeds;
 mod trade_compare;
 mod trajectory;
+mod trials_causes;
+mod trials_parts;
 mod verbose;
 mod wrong_things;
 mod zones_and_fan;

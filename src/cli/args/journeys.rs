@@ -134,6 +134,9 @@ pub(crate) struct PlanArgs {
 pub(crate) struct SimulateArgs {
     #[command(flatten)]
     pub(crate) journey: JourneyArgs,
+    /// Plan the scenario of a result (JSON) anew [default: its path is flown as it stands]
+    #[arg(long)]
+    pub(crate) plan_anew: bool,
     /// How many trials at most [default: the scenario's, or 10000]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) trials: Option<i64>,

@@ -2,6 +2,7 @@
 
 mod ends;
 mod names;
+mod result;
 mod vary;
 
 use std::{
@@ -26,6 +27,7 @@ use serde::Serialize;
 
 pub(crate) use ends::EndOptions;
 pub(crate) use names::relative_name;
+pub(crate) use result::plan_to_fly;
 pub(crate) use vary::load_to_vary;
 
 use super::{

@@ -338,6 +338,35 @@ fn the_rate_converges_within_its_band() {
 }
 
 #[test]
+fn costs_of_errors_are_bars_from_zero() {
+    let bar = |name: &str, rate: f64, half: f64| SensitivityBar {
+        name: name.to_owned(),
+        cost: Success { rate, low: rate - half, high: rate + half },
+    };
+    let bars = vec![
+        bar("takeoff_angle_sigma_deg = 0.5", 0.31, 0.02),
+        bar("takeoff_speed_sigma_fraction = 0.02", 0.12, 0.015),
+        bar("position_sigma_m = 0.05", 0.0, 0.002),
+        bar("friction_sigma = 0.02", -0.01, 0.008),
+    ];
+    let figure = SensitivityFigure { caption: caption(), bars };
+    let picture = check_picture("sensitivity", || draw_sensitivity(&figure).unwrap());
+    let labels = labels(&picture);
+    for text in ["takeoff_angle_sigma_deg = 0.5", "31.0 (29.0 to 33.0)", "-1.0 (-1.8 to -0.2)", "percentage points"] {
+        assert!(labels.iter().any(|label| label.text.contains(text)), "{text}");
+    }
+    for (name, bars) in [
+        ("sensitivity_none", vec![]),
+        ("sensitivity_zero", vec![bar("drift_along_sigma_m = 0.1", 0.0, 0.0)]),
+        ("sensitivity_unknown", vec![bar("a", f64::NAN, 0.1), bar("b", 0.5, f64::INFINITY)]),
+        ("sensitivity_negative", vec![bar("heading_sigma_deg = 1", -0.2, 0.05)]),
+        ("sensitivity_many", (0..20).map(|i| bar(&format!("error {i}"), 0.9 - 0.04 * f64::from(i), 0.01)).collect()),
+    ] {
+        check_picture(name, || draw_sensitivity(&SensitivityFigure { caption: caption(), bars: bars.clone() }).unwrap());
+    }
+}
+
+#[test]
 fn cone_widths_show_hops_and_errors() {
     let point =
         |width_deg: f64, hops| ConeWidthPoint { width_deg, hops, errors: errors(hops.unwrap_or(0) * 1000, 0.02 * width_deg) };

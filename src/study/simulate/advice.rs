@@ -7,7 +7,7 @@ use crate::{
     quantity::format_number,
     report::AdviceRecord,
     study::Planned,
-    uncertainty::{ErrorKey, Policy, Summary, TrialOutcome},
+    uncertainty::{ErrorKey, Policy, Summary, TrialOptions, TrialOutcome},
 };
 
 /// A success rate below this gets advice.
@@ -128,14 +128,15 @@ impl Advisor<'_> {
     }
 
     fn hop_limit(&self) -> Option<AdviceRecord> {
-        let limit = self.planned.case.scenario.uncertainty?.hop_limit?;
-        let reason = format!("trials end at the limit; the path has {} hops, and replanning takes more", self.hops().len());
+        let hops = self.hops().len();
+        let limit = self.planned.case.scenario.uncertainty?.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(hops));
+        let reason = format!("a greater one lets trials go on: the path has {hops} hops, and replanning takes more");
         Some(record("uncertainty.hop_limit", limit.to_string(), None, reason))
     }
 
     fn propellant(&self) -> Option<AdviceRecord> {
         let max_kg = self.planned.case.scenario.hopper.limits().propellant_max_kg?;
-        let reason = "replanned hops and errors take more than the plan".to_owned();
+        let reason = "with more of it, hops that replanning and errors add can be flown";
         Some(record("hopper.propellant_max_kg", format_number(max_kg), None, reason))
     }
 }

@@ -15,7 +15,7 @@ use crate::{
     graph::{NodesError, SearchError},
     ground::DemGround,
     progress::{Cancelled, Progress},
-    report::{SimulateAnswer, SimulationRecord},
+    report::{HopRecord, SimulateAnswer, SimulationRecord},
     terrain::{Dem, TerrainError},
     uncertainty::{Observer, Policy, SimulationError, Summary, Tally, TrialOptions},
 };
@@ -98,6 +98,11 @@ pub struct Simulated {
     ground: Option<DemGround>,
 }
 
+/// The planned hops as the answer lists them: the same, whether or not the plan was estimated.
+fn planned_rows(planned: &Planned) -> Vec<HopRecord> {
+    planned.answer.path.iter().map(|hop| HopRecord { margins_sigma: None, ..hop.clone() }).collect()
+}
+
 /// Flies the trials of a plan under the errors of its scenario. Without a path nothing is flown, and the answer says so.
 ///
 /// # Errors
@@ -159,8 +164,15 @@ impl Trials {
         let hops = self.planned.path.as_ref().map_or(0, |path| path.hops.len());
         let simulation = Some(SimulationRecord::new(&tally.summary(), hops));
         let advice = advice(&self.planned, &tally.summary());
-        SimulateAnswer { check: self.planned.answer.check.clone(), simulation, compare: Vec::new(), requirement: None, advice }
-            .requiring(self.success_min)
+        SimulateAnswer {
+            check: self.planned.answer.check.clone(),
+            path: planned_rows(&self.planned),
+            simulation,
+            compare: Vec::new(),
+            requirement: None,
+            advice,
+        }
+        .requiring(self.success_min)
     }
 
     /// Flies them, policy by policy on the same draws.
@@ -169,9 +181,10 @@ impl Trials {
     /// [`SimulateError`].
     pub fn fly(self, observer: &mut dyn Observer, progress: &dyn Progress) -> Result<Simulated, SimulateError> {
         let Self { planned, policies, options, success_min, tally, warnings } = self;
-        let check = planned.answer.check.clone();
+        let (check, rows) = (planned.answer.check.clone(), planned_rows(&planned));
         let Some(path) = &planned.path else {
-            let answer = SimulateAnswer { check, simulation: None, compare: Vec::new(), requirement: None, advice: Vec::new() };
+            let answer =
+                SimulateAnswer { check, path: rows, simulation: None, compare: Vec::new(), requirement: None, advice: Vec::new() };
             let answer = answer.requiring(success_min);
             return Ok(Simulated { planned, summaries: Vec::new(), tallies: Vec::new(), answer, warnings, ground: None });
         };
@@ -199,7 +212,7 @@ impl Trials {
             planned: Arc::clone(&planned),
             summaries,
             tallies,
-            answer: SimulateAnswer { check, simulation, compare, requirement: None, advice }.requiring(success_min),
+            answer: SimulateAnswer { check, path: rows, simulation, compare, requirement: None, advice }.requiring(success_min),
             warnings,
             ground: flyer.into_ground(),
         })

@@ -1,17 +1,15 @@
 //! `chta simulate --experiment NAME`.
 
-use std::sync::Arc;
-
 use chta::{
     report::{DocumentKind, simulate_text},
-    study::{PlanOptions, SimulateOptions, experiment, plan, simulate},
+    study::{SimulateOptions, experiment, simulate},
 };
 
 use crate::cli::{
     Answer, Failure,
     args::SimulateArgs,
     hints::further_means,
-    load::Loaded,
+    load::{Loaded, plan_to_fly},
     output,
     progress::Progress,
     views::{Files, show},
@@ -23,7 +21,7 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     loaded.ends()?;
     let progress = Progress::new(args.common.quiet);
-    let planned = Arc::new(plan(&loaded.case, PlanOptions::default(), &progress)?);
+    let planned = plan_to_fly(args, loaded, &progress)?;
     output::warn_all(args.common.quiet, &planned.warnings);
     let experimented = experiment(&planned, which, reading, &progress)?;
     drop(progress);

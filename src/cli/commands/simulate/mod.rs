@@ -2,11 +2,9 @@
 
 mod experiment;
 
-use std::sync::Arc;
-
 use chta::{
     report::{DocumentKind, simulate_text},
-    study::{PlanOptions, Trials, plan},
+    study::Trials,
 };
 
 use crate::cli::{
@@ -16,7 +14,7 @@ use crate::cli::{
     hints::further_means,
     inputs,
     landings::{Listener, RowFile},
-    load::load_journey,
+    load::{load_journey, plan_to_fly},
     output::{self, Pending},
     progress::Progress,
     threads,
@@ -42,7 +40,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let tally = args.tally.as_deref().map(Pending::begin).transpose()?;
     let in_time = TrajectoryFile::begin(&args.trajectory)?;
     let quiet = args.common.quiet;
-    let planned = Arc::new(plan(&loaded.case, PlanOptions::default(), &Progress::new(quiet))?);
+    let planned = plan_to_fly(args, &loaded, &Progress::new(quiet))?;
     output::warn_all(quiet, &planned.warnings);
     let mut files = Files::default();
     files.trajectory(in_time, planned.path.as_ref(), &planned.case)?;

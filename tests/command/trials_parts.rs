@@ -1,0 +1,218 @@
+//! `chta simulate` in ranges, with draws, along the path of a result, and against a success to be shown.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
+
+use chta::uncertainty::{Tally, TrialOutcome};
+use serde_json::{Value, json};
+
+use crate::desk::Desk;
+
+const ERRORS: &str = "\n[uncertainty]\ntakeoff_speed_sigma_fraction = 0.01\ntakeoff_angle_sigma_deg = 0.3\nposition_sigma_m = 0.05\n\
+    drift_along_sigma_m = 0.1\nfriction_sigma = 0.02\ngoal_tolerance_m = 2.0\ntrials = 900\nseed = 4\n";
+
+/// A scenario along a chain and one on a map, with errors.
+fn desk() -> Desk {
+    let desk = Desk::with_dem();
+    desk.write("chain.toml", desk.read("scenario.toml") + ERRORS);
+    desk.write("dem.toml", format!("{}{ERRORS}heading_sigma_deg = 1.0\ndrift_across_sigma_m = 0.05\n", desk.read("map.toml")));
+    desk
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+#[test]
+fn halves_merge_to_the_whole() {
+    for scenario in ["chain.toml", "dem.toml"] {
+        for policy in ["open-loop", "replan"] {
+            let desk = desk();
+            let flown = |name: &str, first: &str, trials: &str| {
+                let (tally, rows) = (format!("{name}.json"), format!("{name}.csv"));
+                let words = ["simulate", scenario, "--policy", policy, "--first-trial", first, "--trials", trials];
+                let document = desk.json(&[&words[..], &["--tally", &tally, "-o", &rows, "--draws"]].concat());
+                let tally: Tally = serde_json::from_str(&desk.read(&tally)).unwrap();
+                (tally, desk.read(&rows), document)
+            };
+            let (whole, all_rows, document) = flown("whole", "0", "900");
+            let (first, first_rows, _) = flown("first", "0", "350");
+            let (mut merged, last_rows, part) = flown("last", "350", "550");
+            assert!(document.get("first_trial").is_none() && part["first_trial"] == 350, "{scenario}, {policy}");
+            merged.merge(&first).unwrap();
+            let bytes = |tally: &Tally| serde_json::to_string(tally).unwrap();
+            assert_eq!(bytes(&merged), bytes(&whole), "{scenario}, {policy}");
+            assert_eq!(merged.summary().outcomes.of(TrialOutcome::Reached), document["outcomes"]["reached"].as_u64().unwrap());
+            let without_header = last_rows.split_once('\n').unwrap().1;
+            assert_eq!(first_rows + without_header, all_rows, "{scenario}, {policy}");
+            assert!(merged.merge(&first).is_err(), "no trial counts twice");
+        }
+    }
+}
+
+/// Open loop the first hop's command is that of the plan, and what was drawn is what differs from it.
+#[test]
+fn the_draws_beside_a_landing_are_its_errors() {
+    let desk = desk();
+    for (scenario, [rest, landing]) in
+        [("chain.toml", ["rest_x_m", "landing_x_m"]), ("dem.toml", ["rest_map_x_m", "landing_map_x_m"])]
+    {
+        let set = "uncertainty.policy=open-loop";
+        let hop = desk.json(&["plan", scenario, "--set", set])["path"][0].clone();
+        let ran = desk.run(&["simulate", scenario, "--set", set, "-o", "rows.csv", "--draws"]);
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        let table = desk.read("rows.csv");
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        let headers = reader.headers().unwrap().clone();
+        let rows: Vec<_> = reader.records().map(Result::unwrap).collect();
+        let of = |row: &csv::StringRecord, name: &str| -> f64 {
+            let place = headers.iter().position(|header| header == name).unwrap_or_else(|| panic!("no column {name}"));
+            row[place].parse().unwrap()
+        };
+        let first: Vec<_> = rows.iter().filter(|row| of(row, "hop") == 1.0).collect();
+        assert!(first.len() > 100, "{scenario}: {}", first.len());
+        let mut frictions = Vec::new();
+        for row in first {
+            let speed = number(&hop["takeoff_speed_m_s"]) + of(row, "drawn_takeoff_speed_m_s");
+            assert!((speed - of(row, "takeoff_speed_m_s")).abs() < 1e-9, "{scenario}: {row:?}");
+            let angle = number(&hop["takeoff_angle_deg"]) + of(row, "drawn_takeoff_angle_deg");
+            assert!((angle - of(row, "takeoff_angle_deg")).abs() < 1e-9, "{scenario}: {row:?}");
+            if scenario == "dem.toml" {
+                let heading = number(&hop["heading_deg"]) + of(row, "drawn_heading_deg");
+                assert!((heading - of(row, "heading_deg")).abs() < 1e-9, "{row:?}");
+            }
+            let moved =
+                (of(row, rest) - of(row, landing)).hypot(of(row, &rest.replace('x', "y")) - of(row, &landing.replace('x', "y")));
+            let drawn = of(row, "drawn_drift_along_m").hypot(of(row, "drawn_drift_across_m"));
+            // A landing that ends its trial does not move; elsewhere the ground may be sloped.
+            assert!(moved == 0.0 || (moved - drawn).abs() < 0.1 * drawn + 1e-9, "{scenario}: {moved} beside {drawn}");
+            assert_eq!([of(row, "drawn_position_x_m"), of(row, "drawn_position_y_m")], [0.0; 2], "open loop asks for no position");
+            frictions.push(of(row, "drawn_friction_coefficient"));
+        }
+        let spread = (frictions.iter().map(|friction| friction * friction).sum::<f64>() / frictions.len() as f64).sqrt();
+        assert!((spread - 0.02).abs() < 0.003, "{spread}");
+    }
+}
+
+#[test]
+fn a_success_that_is_not_shown_is_the_answer_no() {
+    let desk = desk();
+    let words = |share: &'static str| ["simulate", "chain.toml", "--trials", "300", "--success-min", share];
+    let document = desk.json(&words("0.5"));
+    let [low, rate] = [number(&document["success_rate_ci95"][0]), number(&document["success_rate"])];
+    // Just below the lower end, between it and the rate, above the rate; with trials that are too few for certainty.
+    let beside = |share: f64| format!("{share:.6}");
+    for (share, status, sentence) in [
+        (beside(low - 1e-4), 0, "is shown: the lower end of the 95 % interval is"),
+        (beside(low + 1e-4), 1, "more trials narrow the interval"),
+        ("1".to_owned(), 1, "is not shown: the lower end of the 95 % interval is"),
+    ] {
+        let words = ["simulate", "chain.toml", "--trials", "300", "--success-min", &share];
+        let ran = desk.run(&words);
+        assert_eq!(ran.status, status, "{share} beside {low} and {rate}: {}", ran.stdout);
+        assert!(ran.stdout.contains(&format!("a success of {share} ")) && ran.stdout.contains(sentence), "{share}: {}", ran.stdout);
+        let document = desk.json(&words);
+        assert_eq!(document["success_min_shown"], json!(status == 0), "{share}");
+    }
+    assert_eq!(
+        desk.run(&["simulate", "chain.toml", "--set", "surface.friction_coefficient=0.05", "--success-min", "0.1"]).status,
+        1
+    );
+    for bad in ["0", "-0.1", "1.01", "nan", "most"] {
+        desk.refused(&["simulate", "chain.toml", "--success-min", bad], &["--success-min", "above 0 and at most 1"]);
+    }
+}
+
+/// What is flown is the path of the result, whatever a search would find.
+#[test]
+fn a_result_is_flown_as_it_stands() {
+    let desk = desk();
+    for scenario in ["chain.toml", "dem.toml"] {
+        // Another path than that of the scenario, whose search weighs risk.
+        let (ignored, traded) = ("search.risk=ignored", "search.risk=traded");
+        let written = |name: &str, document: &Value| desk.write(name, serde_json::to_string(document).unwrap());
+        let plain = desk.json(&["plan", scenario, "--set", ignored]);
+        written("plain.json", &plain);
+        assert_eq!(desk.run(&["run", scenario, "--set", ignored, "-o", "out"]).status, 0);
+        let flown = desk.json(&["simulate", scenario, "--set", ignored]);
+        written("flown.json", &flown);
+        let path = |document: &Value| -> Vec<[f64; 3]> {
+            let hops = document["path"].as_array().unwrap();
+            hops.iter().map(|hop| ["landing_x_m", "takeoff_angle_deg", "takeoff_speed_m_s"].map(|key| number(&hop[key]))).collect()
+        };
+        assert_ne!(path(&plain), path(&desk.json(&["plan", scenario])), "{scenario}: the test needs two paths");
+        for result in ["plain.json", "out/result.json", "flown.json"] {
+            // A degree converted to radians and back loses its last digit; outcomes do not hang on that.
+            let of_result = desk.json(&["simulate", result]);
+            assert_eq!((&of_result["outcomes"], path(&of_result)), (&flown["outcomes"], path(&plain)), "{scenario}: {result}");
+            // Keys of the search do not plan anew.
+            let other = desk.json(&["simulate", result, "--set", traded, "--set", "uncertainty.policy=open-loop"]);
+            assert_eq!(path(&other), path(&plain), "{scenario}: {result}");
+        }
+        let anew = desk.json(&["simulate", "plain.json", "--set", traded, "--plan-anew"]);
+        assert_eq!(path(&anew), path(&desk.json(&["plan", scenario, "--set", traded])), "{scenario}");
+        let mut spoiled = plain.clone();
+        spoiled["path"][0]["takeoff_speed_m_s"] = json!(number(&plain["path"][0]["takeoff_speed_m_s"]) * 1.01);
+        written("spoiled.json", &spoiled);
+        let mut short = plain.clone();
+        short["path"].as_array_mut().unwrap().pop();
+        written("short.json", &short);
+        written("check.json", &desk.json(&["check", scenario]));
+        let mut broken = plain.clone();
+        broken["path"][0]["landing_x_m"] = json!("far");
+        written("broken.json", &broken);
+        let mut off = plain.clone();
+        off["path"][0]["takeoff_x_m"] = json!(-500.0);
+        written("off.json", &off);
+        let anew = "--plan-anew plans its scenario anew";
+        for (words, parts) in [
+            (&["simulate", "spoiled.json"][..], &["spoiled.json: the path of the result does not hold", "hop 1", anew][..]),
+            (&["simulate", "plain.json", "--set", "hopper.takeoff_speed_max_m_s=1"], &["does not hold", "hop 1", anew]),
+            (&["simulate", "plain.json", "--goal", "9"], &["does not hold", anew]),
+            (&["simulate", "short.json"], &["hops, but its path has", anew]),
+            (&["simulate", "check.json"], &["found a document of chta/check/1, expected one of plan, run or simulate", anew]),
+            (&["simulate", "broken.json"], &["path is not as results have it", anew]),
+            (&["simulate", "off.json"], &["hop 1 of the result: x = -500 m is off the chain", anew]),
+            (&["simulate", scenario, "--plan-anew"], &["--plan-anew", "is no result", "omit it"]),
+        ] {
+            if words.contains(&"--goal") && scenario == "dem.toml" {
+                continue;
+            }
+            desk.refused(words, parts);
+        }
+        // A file that has changed since.
+        let ground = if scenario == "chain.toml" { "chain.csv" } else { "ground.tif" };
+        if scenario == "chain.toml" {
+            desk.write(ground, desk.read(ground).replace("10,2\n", "10,2.001\n"));
+        } else {
+            assert_eq!(desk.run(&["synth", "--rows", "20", "--cols", "20", "--seed", "9", "-o", ground]).status, 0);
+        }
+        desk.refused(
+            &["simulate", "plain.json"],
+            &[&format!("the result was made with {ground} of SHA-256 "), "that name now has", anew],
+        );
+    }
+}
+
+/// A machine whose headings come in steps flies beside the line: such a path is read back as well.
+#[test]
+fn a_result_beside_the_line_or_in_steps_is_flown_as_it_stands() {
+    let desk = desk();
+    for steps in [&["hopper.takeoff_speed_step_m_s=0.05", "hopper.takeoff_angle_step_deg=1"][..], &["hopper.heading_step_deg=3"]] {
+        let set: Vec<&str> = steps.iter().flat_map(|key| ["--set", key]).collect();
+        let flown = desk.json(&[&["simulate", "dem.toml", "--policy", "open-loop"], &set[..]].concat());
+        assert_eq!(flown["verdict"], "traversable", "{steps:?}");
+        assert!(flown["path"][0].get("aim_x_m").is_some(), "{steps:?}: {}", flown["path"][0]);
+        desk.write("steps.json", serde_json::to_string(&flown).unwrap());
+        let again = desk.json(&["simulate", "steps.json"]);
+        assert_eq!((&again["outcomes"], &again["path"]), (&flown["outcomes"], &flown["path"]), "{steps:?}");
+    }
+}
+
+#[test]
+fn a_result_without_a_path_is_the_answer_no() {
+    let desk = desk();
+    let none = desk.json(&["plan", "chain.toml", "--set", "surface.friction_coefficient=0.05"]);
+    desk.write("none.json", serde_json::to_string(&none).unwrap());
+    let ran = desk.run(&["simulate", "none.json"]);
+    assert!(ran.status == 1 && ran.stdout.contains("nothing to simulate: there is no nominal path"), "{ran:?}");
+}
