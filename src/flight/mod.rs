@@ -2,6 +2,7 @@
 //!
 //! [`crate::uncertainty`] combines hops to trials: policies, outcomes, statistics.
 
+mod bounce;
 mod deviations;
 mod draws;
 mod hop;

@@ -218,6 +218,8 @@ impl<G: FirstContact> Journey<'_, G> {
             planned_m: aim_m,
             contact_m: self.end_of_flight(&flown.end, &from, liftoff, flown.time_s, landed),
             rest_m,
+            bounces: flown.bounces.count,
+            bounce_time_s: flown.bounces.time_s,
             error_m,
             landed,
             outcome,
