@@ -130,3 +130,6 @@ fn leaving(velocity: Vector3<f64>, before: Vector2<f64>) -> LiftoffVelocity {
     let heading = if horizontal_m_s > 0.0 { velocity.xy() / horizontal_m_s } else { before };
     LiftoffVelocity { heading, horizontal_m_s, vertical_m_s: velocity.z }
 }
+
+#[cfg(test)]
+mod tests;

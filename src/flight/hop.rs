@@ -10,15 +10,18 @@ use super::{
 use crate::ballistics::Arc;
 use crate::ground::{ContactFailure, FirstContact, HeightField, LiftoffVelocity, Realization, TouchdownState};
 
-/// A command, and its planned landing.
+/// A command, its planned landing, and where the hop is meant to end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Command<C> {
     pub(crate) liftoff: LiftoffVelocity,
     pub(crate) speed_m_s: f64,
+    /// The planned first contact.
     pub(crate) aim: C,
+    /// The planned place of rest, from which the error of a landing is measured: `aim`, unless the command accounts for bounces.
+    pub(crate) rest: C,
 }
 
-impl<C> Command<C> {
+impl<C: Copy> Command<C> {
     /// The command that flies an arc along a heading.
     pub(crate) fn of_arc(arc: &Arc, heading: Vector2<f64>, aim: C) -> Self {
         let across = arc.horizontal_speed_m_s();
@@ -26,7 +29,7 @@ impl<C> Command<C> {
     }
 
     pub(crate) fn new(liftoff: LiftoffVelocity, aim: C) -> Self {
-        Self { liftoff, speed_m_s: libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s), aim }
+        Self { liftoff, speed_m_s: libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s), aim, rest: aim }
     }
 }
 

@@ -8,8 +8,10 @@ mod draws;
 mod hop;
 mod hop_trials;
 mod quasi;
+mod rest_aim;
 
 pub use deviations::{Uncertainty, UncertaintyProblem};
 pub(crate) use draws::{HopDraws, TrialDraws};
 pub(crate) use hop::{Command, Errors, FlownHop};
+pub(crate) use rest_aim::resting_at;
 pub(crate) use hop_trials::{HopTrials, JudgedHop, Survival};

@@ -5,8 +5,8 @@ use nalgebra::{Point2, Point3};
 use super::{HopRecord, Policy, TrialOutcome, TrialRecord, replan::Replan};
 use crate::{
     ballistics::{delta_v_of_m_s, propellant_kg},
-    flight::{Command, Errors, FlownHop, HopDraws, TrialDraws},
-    ground::{ContactFailure, FirstContact, LiftoffVelocity},
+    flight::{Command, Errors, FlownHop, HopDraws, TrialDraws, resting_at},
+    ground::{ContactFailure, FirstContact, LiftoffVelocity, Windows},
     world::HopperLimits,
 };
 
@@ -83,9 +83,9 @@ pub(super) struct Flown {
     pub(super) hops: Vec<HopRecord>,
 }
 
-/// Flies one trial.
-pub(super) fn fly<G: FirstContact>(
-    ground: &mut G,
+/// Flies one trial. `grounds`: the nominal one, which the robot knows, and the one of this trial.
+pub(super) fn fly<G: FirstContact + Windows>(
+    grounds: (&G, &mut G),
     draws: &mut TrialDraws,
     plan: &Plan<G::Contact>,
     rules: &Rules,
@@ -93,11 +93,12 @@ pub(super) fn fly<G: FirstContact>(
     keep_hops: bool,
     flown: &mut Flown,
 ) {
+    let (nominal, ground) = grounds;
     if let Some(realization) = rules.errors.realization(draws, trial) {
         ground.realize(realization);
     }
     draws.begin(trial);
-    let mut journey = Journey { ground, plan, rules, position: ground.realized(plan.start), hops: 0, used_kg: 0.0 };
+    let mut journey = Journey { nominal, ground, plan, rules, position: ground.realized(plan.start), hops: 0, used_kg: 0.0 };
     let outcome = loop {
         let drawn = rules.errors.draw(draws);
         let command = match journey.decide(&drawn) {
@@ -118,7 +119,7 @@ pub(super) fn fly<G: FirstContact>(
             };
             journey.used_kg = used_kg;
         }
-        let ended = journey.land(&liftoff, &command.aim, hop, |landing, hop| {
+        let ended = journey.land(&liftoff, &command.rest, hop, |landing, hop| {
             flown.landings.extend(landing);
             if keep_hops {
                 flown.hops.push(HopRecord { trial, ..hop() });
@@ -139,6 +140,8 @@ pub(super) fn fly<G: FirstContact>(
 
 /// A trial in progress.
 struct Journey<'t, G: FirstContact> {
+    /// The ground as the robot knows it.
+    nominal: &'t G,
     ground: &'t G,
     plan: &'t Plan<G::Contact>,
     rules: &'t Rules,
@@ -148,7 +151,7 @@ struct Journey<'t, G: FirstContact> {
     used_kg: f64,
 }
 
-impl<G: FirstContact> Journey<'_, G> {
+impl<G: FirstContact + Windows> Journey<'_, G> {
     /// The next command, or the outcome of a journey that ends here.
     fn decide(&self, drawn: &HopDraws) -> Result<Command<G::Contact>, TrialOutcome> {
         let planned = usize::try_from(self.hops).ok().and_then(|hop| self.plan.hops.get(hop));
@@ -161,10 +164,12 @@ impl<G: FirstContact> Journey<'_, G> {
                     return Err(self.arrived());
                 }
                 // At a planned position the planned hop is optimal.
-                match planned {
+                let command = match planned {
                     Some(hop) if hop.from == believed => Ok(hop.command),
                     _ => self.plan.replan.as_ref().and_then(|replan| replan.next(&believed)).ok_or(TrialOutcome::Stuck),
-                }
+                };
+                // A robot that bounces aims short.
+                command.map(|command| resting_at(self.nominal, &believed, command))
             }
         }
     }
@@ -193,7 +198,7 @@ impl<G: FirstContact> Journey<'_, G> {
     fn land(
         &mut self,
         liftoff: &LiftoffVelocity,
-        aim: &G::Contact,
+        rest_aim: &G::Contact,
         flown: FlownHop<G::Contact>,
         mut report: impl FnMut(Option<Landing>, &dyn Fn() -> HopRecord),
     ) -> Option<TrialOutcome> {
@@ -201,7 +206,7 @@ impl<G: FirstContact> Journey<'_, G> {
         let from = self.position;
         let FlownHop { rest, landed, .. } = flown;
         let outcome = flown.failure.map(outcome_of);
-        let (aim_m, rest_m) = (ground.point(aim), ground.point(&rest));
+        let (aim_m, rest_m) = (ground.point(rest_aim), ground.point(&rest));
         let error_m = (rest_m - aim_m).xy().norm();
         let landing = landed.then(|| Landing { hop: self.hops, error_m, rest: rest_m.xy() });
         self.hops += 1;
