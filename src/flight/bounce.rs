@@ -69,7 +69,8 @@ pub(super) fn arc<G: FirstContact>(
 /// against friction: what friction takes is in the coefficient along the facet. The place of rest is judged against the rest slope.
 ///
 /// A bounce that begins on a vertex or an edge may lead into the next facet at once: an arc of no length, and the next impact is on that
-/// facet. A contact whose velocity does not point into its facet is no impact: the hopper rests.
+/// facet. A contact whose velocity does not point into its facet is no impact: the hopper rests. By rounding that also ends the bounces of
+/// a hopper whose speed away from the facet is some 1e-13 of its speed along it, and which no further bounce would move.
 ///
 /// A braked hopper meets the ground straight down, at its touchdown speed.
 #[cold]

@@ -13,5 +13,5 @@ mod rest_aim;
 pub use deviations::{Uncertainty, UncertaintyProblem};
 pub(crate) use draws::{HopDraws, TrialDraws};
 pub(crate) use hop::{Command, Errors, FlownHop};
-pub(crate) use rest_aim::resting_at;
 pub(crate) use hop_trials::{HopTrials, JudgedHop, Survival};
+pub(crate) use rest_aim::resting_at;

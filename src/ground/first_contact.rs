@@ -112,12 +112,8 @@ pub trait FirstContact: Surface + Clone + Send + Sync {
     ///
     /// # Errors
     /// [`ContactFailure::OffLimits`] or [`ContactFailure::Slides`] where it cannot rest.
-    fn check_rest(
-        &self,
-        position: &Self::Contact,
-        facet: &Self::SupportFacet,
-        heading: Vector2<f64>,
-    ) -> Result<(), ContactFailure>;
+    fn check_rest(&self, position: &Self::Contact, facet: &Self::SupportFacet, heading: Vector2<f64>)
+    -> Result<(), ContactFailure>;
 
     /// Where the hopper comes to rest after a bounce-and-roll displacement along and to the left of its heading.
     ///

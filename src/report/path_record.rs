@@ -470,7 +470,8 @@ impl HopRecord {
             fields.extend(texts(beside.map(|aim| [aim.landing_miss_across_m, aim.aim_map_x_m, aim.aim_map_y_m])));
         }
         if extra.bounces {
-            let bounces = self.roll_out.map(|bounces| [f64::from(bounces.bounces), bounces.bounce_distance_m, bounces.bounce_time_s]);
+            let bounces =
+                self.roll_out.map(|bounces| [f64::from(bounces.bounces), bounces.bounce_distance_m, bounces.bounce_time_s]);
             fields.extend(texts(bounces));
         }
         fields.extend(self.margins.fields());

@@ -15,7 +15,8 @@ use super::{
 use crate::{
     flight::{Command, Errors, TrialDraws, Uncertainty},
     ground::{
-        ChainGround, ChainPosition, ContactPoint, DemGround, FirstContact, LiftoffVelocity, MapPosition, Surface, Windows, heading_of,
+        ChainGround, ChainPosition, ContactPoint, DemGround, FirstContact, LiftoffVelocity, MapPosition, Surface, Windows,
+        heading_of,
     },
     path::Hop,
     progress::{Detail, Meter, Progress, Stage},

@@ -97,6 +97,7 @@ fn over_a_plane_at_any_tilt_bounces_are_those_of_its_own_frame() {
         let velocity = (away.normalize() * draw.unit() + normal * draw.uniform(0.3, 1.0)) * speed_m_s;
         // Contacts one by one in that frame.
         let (mut at, mut flies, mut time_s, mut count, mut first) = (Vector3::zeros(), velocity, 0.0, 0, None);
+        let mut least_share: f64 = 1.0;
         let end = loop {
             let lasts_s = 2.0 * flies.dot(&normal) / (gravity_m_s2 * tilt.cos());
             at += (flies - normal * normal.dot(&flies)) * lasts_s + along * (0.5 * lasts_s * lasts_s);
@@ -109,6 +110,7 @@ fn over_a_plane_at_any_tilt_bounces_are_those_of_its_own_frame() {
             if flies.norm() < restitution.settling_speed_m_s(gravity_m_s2) {
                 break at;
             }
+            least_share = least_share.min(flies.dot(&normal) / flies.norm());
         };
         let scale_m = end.norm().max(speed_m_s * speed_m_s / gravity_m_s2);
         let spacing_m = scale_m * draw.log_uniform(0.06, 2.0);
@@ -117,7 +119,8 @@ fn over_a_plane_at_any_tilt_bounces_are_those_of_its_own_frame() {
         let hop = flown(&ground, &ground.position(MapPoint::origin()).unwrap(), velocity);
         let rest = ground.point(&hop.rest).coords;
         assert!(hop.failure.is_none(), "{number}: {hop:?}");
-        assert_eq!(hop.bounces.count, count, "{number}: {hop:?}");
+        // A hopper that hardly leaves the facet rests a few bounces of no length earlier, when rounding hides its impact.
+        assert!(hop.bounces.count == count || hop.bounces.count < count && least_share < 1e-9, "{number}: {hop:?} for {count}");
         assert!((rest - end).norm() <= 1e-8 * scale_m, "{number}: {rest} for {end}");
         assert!((hop.bounces.time_s - time_s).abs() <= 1e-8 * (hop.time_s + time_s), "{number}: {hop:?} for {time_s}");
         counted += count;
