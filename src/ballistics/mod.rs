@@ -29,6 +29,7 @@
 //! Least take-off and least landing speed are both at `n = sqrt(1 + b^2)`.
 
 mod arc;
+mod bounce;
 mod choice;
 mod commands;
 mod delta_v;
@@ -39,6 +40,7 @@ mod line_of_sight;
 mod safety;
 
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
+pub use bounce::{LevelBounces, bounced, level_bounces};
 pub use choice::{TakeoffChoice, loft_at_share};
 pub use commands::{TakeoffSpeeds, TakeoffWindow};
 pub use delta_v::{STANDARD_GRAVITY_M_S2, delta_v_m_s, delta_v_of_m_s, propellant_kg};

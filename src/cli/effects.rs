@@ -110,6 +110,7 @@ impl Purpose {
                 | "isp_s"
                 | "hop_delta_v_overhead_m_s",
             ) => totals,
+            ("contact", _) => totals || flies || (by_risk && weighs_risk),
             ("hopper", "propellant_max_kg") => self.counts_propellant(),
             ("hopper", "takeoff_angle_step_deg" | "heading_step_deg") => self.flies_commands(),
             ("terrain", "dem" | "start_m" | "start_lonlat_deg" | "goal_m" | "goal_lonlat_deg")

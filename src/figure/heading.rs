@@ -185,7 +185,12 @@ fn total(totals: &Totals, prepares: bool) -> String {
         format!("energy {} J/kg", short(totals.energy_j_kg)),
     ];
     parts.extend(totals.energy_j.map(|energy| format!("{} J in all", short(energy))));
-    let waits = if prepares { "preparations and rests" } else { "rests" };
+    let waits = match (totals.bounce_time_s.is_some(), prepares) {
+        (true, true) => "bounces, preparations and rests",
+        (true, false) => "bounces and rests",
+        (false, true) => "preparations and rests",
+        (false, false) => "rests",
+    };
     parts.extend(totals.mission_time_s.map(|time| format!("{} s with {waits}", short(time))));
     if totals.propulsive {
         parts.push(format!("delta-v {} m/s", short(totals.delta_v_m_s)));

@@ -4,21 +4,25 @@ use nalgebra::Vector2;
 
 use super::{
     Uncertainty,
+    bounce::{Bounces, arc, bounces},
     draws::{HopDraws, TrialDraws, Wanted},
 };
 use crate::ballistics::Arc;
-use crate::ground::{ContactFailure, FirstContact, Flight, HeightField, LiftoffVelocity, Realization, TouchdownState};
+use crate::ground::{ContactFailure, FirstContact, HeightField, LiftoffVelocity, Realization, TouchdownState};
 use crate::quantity::Angle;
 
-/// A command, and its planned landing.
+/// A command, its planned landing, and where the hop is meant to end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Command<C> {
     pub(crate) liftoff: LiftoffVelocity,
     pub(crate) speed_m_s: f64,
+    /// The planned first contact.
     pub(crate) aim: C,
+    /// The planned place of rest, from which the error of a landing is measured: `aim`, unless the command accounts for bounces.
+    pub(crate) rest: C,
 }
 
-impl<C> Command<C> {
+impl<C: Copy> Command<C> {
     /// The command that flies an arc along a heading.
     pub(crate) fn of_arc(arc: &Arc, heading: Vector2<f64>, aim: C) -> Self {
         let across = arc.horizontal_speed_m_s();
@@ -26,7 +30,7 @@ impl<C> Command<C> {
     }
 
     pub(crate) fn new(liftoff: LiftoffVelocity, aim: C) -> Self {
-        Self { liftoff, speed_m_s: libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s), aim }
+        Self { liftoff, speed_m_s: libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s), aim, rest: aim }
     }
 }
 
@@ -60,8 +64,10 @@ pub struct DrawnErrors {
 pub(crate) struct FlownHop<C> {
     /// The first contact, or the last position over known ground.
     pub(crate) end: C,
-    /// Where the hopper comes to rest after bounce and roll; equal to `end` if it does not come to rest safely (see `failure`).
+    /// Where the hopper comes to rest after bounces and drift; the last contact if it does not come to rest safely (see `failure`).
     pub(crate) rest: C,
+    /// The bounces after the first contact.
+    pub(crate) bounces: Bounces<C>,
     pub(crate) time_s: f64,
     pub(crate) touchdown: TouchdownState,
     /// Whether it ended on the ground: it touched down, or it never lifted off.
@@ -147,8 +153,8 @@ impl Errors {
         LiftoffVelocity { heading, horizontal_m_s: horizontal, vertical_m_s: up }
     }
 
-    /// Follows an arc to its first contact, checks the landing, and adds the random displacement (`drift_*`) that stands for bounce
-    /// and roll.
+    /// Follows an arc to its first contact, checks the landing, follows its bounces if the hopper has a restitution, and adds the random
+    /// displacement (`drift_*`) that stands for what rolls on.
     pub(crate) fn fly<G: FirstContact>(
         &self,
         ground: &G,
@@ -157,14 +163,7 @@ impl Errors {
         aim: &G::Contact,
         draws: &HopDraws,
     ) -> FlownHop<G::Contact> {
-        // An error can lift the speed to that of escape: the hopper does not come back.
-        let speed_m_s = libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s);
-        let escapes = ground.gravity().escape_speed_m_s().is_some_and(|escape_m_s| speed_m_s >= escape_m_s);
-        let flight = if escapes {
-            Flight { end: *from, support_facet: None, time_s: 0.0 }
-        } else {
-            ground.first_contact(from, liftoff, aim)
-        };
+        let flight = arc(ground, from, liftoff, aim);
         let touchdown = TouchdownState::after(liftoff, flight.time_s, ground.gravity_m_s2());
         let displacement_m = self.drift_m(draws);
         let held = match &flight.support_facet {
@@ -173,10 +172,19 @@ impl Errors {
             None => Err(ContactFailure::OffLimits),
             Some(support_facet) => ground.check_landing(&flight.end, support_facet, &touchdown),
         };
-        let rest = held.and_then(|()| ground.displaced(&flight.end, liftoff.heading, displacement_m[0], displacement_m[1]));
+        let bounces = match &ground.hopper().limits().restitution {
+            Some(restitution) if held.is_ok() && restitution.bounces() && !liftoff.stays() => {
+                bounces(ground, &flight, &touchdown, restitution)
+            }
+            _ => Bounces::none(flight.end),
+        };
+        let rest = held
+            .and(bounces.failure.map_or(Ok(()), Err))
+            .and_then(|()| ground.displaced(&bounces.end, liftoff.heading, displacement_m[0], displacement_m[1]));
         FlownHop {
             end: flight.end,
-            rest: rest.unwrap_or(flight.end),
+            rest: rest.unwrap_or(bounces.end),
+            bounces,
             time_s: flight.time_s,
             touchdown,
             landed: flight.support_facet.is_some() || liftoff.stays(),

@@ -5,8 +5,9 @@ use nalgebra::{Point2, Vector2};
 use super::{
     Command, Errors, TrialDraws, Uncertainty,
     quasi::{FixedDraw, fixed_draws},
+    resting_at,
 };
-use crate::ground::{FirstContact, Realization};
+use crate::ground::{FirstContact, Realization, Windows};
 
 /// Draws of every hop in a search.
 pub(crate) const SEARCHED_DRAWS: u32 = 64;
@@ -28,6 +29,8 @@ pub(crate) struct JudgedHop<C> {
     pub(crate) takeoff_sigma_m: [f64; 2],
     /// For the last hop: the goal, and how near to it the hopper has to come to rest, m.
     pub(crate) goal: Option<(Point2<f64>, f64)>,
+    /// Whether the robot makes the command anew where it is, and so accounts for its bounces.
+    pub(crate) aims_at_rest: bool,
 }
 
 /// What became of the draws of a hop.
@@ -53,6 +56,8 @@ pub(crate) struct Survival {
 #[derive(Clone, Debug)]
 pub(crate) struct HopTrials<G> {
     draws: Vec<FixedDraw>,
+    /// The ground as the robot knows it.
+    nominal: G,
     plain: Errand<G>,
     doubled: Errand<G>,
 }
@@ -64,7 +69,7 @@ struct Errand<G> {
     grounds: Vec<G>,
 }
 
-impl<G: FirstContact> HopTrials<G> {
+impl<G: FirstContact + Windows> HopTrials<G> {
     /// A number of draws of these errors over a ground that has this many points to realize.
     pub(crate) fn new(ground: &G, uncertainty: &Uncertainty, points: usize, count: u32) -> Self {
         let draws = fixed_draws(count);
@@ -87,7 +92,7 @@ impl<G: FirstContact> HopTrials<G> {
             let grounds = if realizations == 0 { vec![ground.clone()] } else { (0..realizations).map(realized).collect() };
             Errand { errors, grounds }
         };
-        Self { plain: errand(*uncertainty), doubled: errand(uncertainty.scaled(2.0)), draws }
+        Self { nominal: ground.clone(), plain: errand(*uncertainty), doubled: errand(uncertainty.scaled(2.0)), draws }
     }
 
     /// What becomes of a hop under the errors; `enough`: the count of failures after which no more draws are flown.
@@ -102,6 +107,8 @@ impl<G: FirstContact> HopTrials<G> {
     }
 
     fn flown(&self, errand: &Errand<G>, hop: &JudgedHop<G::Contact>, scale: f64, enough: u32) -> Survival {
+        let command = if hop.aims_at_rest { resting_at(&self.nominal, &hop.from, hop.command) } else { hop.command };
+        let hop = &JudgedHop { command, ..*hop };
         let mut survival = Survival::default();
         for (number, draw) in self.draws.iter().enumerate() {
             let ground = &errand.grounds[number % errand.grounds.len()];
@@ -149,6 +156,6 @@ fn rest<G: FirstContact>(
     if hop.goal.is_some_and(|(goal, tolerance_m)| (at - goal).norm() > tolerance_m) {
         return None;
     }
-    let away = at - ground.point(&hop.command.aim).xy();
+    let away = at - ground.point(&hop.command.rest).xy();
     Some([away.dot(&heading), heading.x * away.y - heading.y * away.x])
 }

@@ -2,12 +2,14 @@
 //!
 //! [`crate::uncertainty`] combines hops to trials: policies, outcomes, statistics.
 
+mod bounce;
 mod deviations;
 mod draws;
 mod error_key;
 mod hop;
 mod hop_trials;
 mod quasi;
+mod rest_aim;
 
 pub use deviations::{Uncertainty, UncertaintyProblem};
 pub(crate) use draws::{HopDraws, TrialDraws};
@@ -15,3 +17,4 @@ pub use error_key::ErrorKey;
 pub use hop::DrawnErrors;
 pub(crate) use hop::{Command, Errors, FlownHop};
 pub(crate) use hop_trials::{HopTrials, JudgedHop, REPORTED_DRAWS, SEARCHED_DRAWS, Survival};
+pub(crate) use rest_aim::resting_at;

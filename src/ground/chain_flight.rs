@@ -463,6 +463,26 @@ impl FirstContact for ChainGround {
         check_landing(rule, self.test.hopper().limits().arc_landing_speed_max_m_s(), touchdown)
     }
 
+    fn gradient(&self, facet: &SegmentId) -> Vector2<f64> {
+        let (a, b) = (self.vertices()[facet.index()], self.vertices()[facet.index() + 1]);
+        Vector2::new((b.z_m - a.z_m) / (b.x_m - a.x_m), 0.0)
+    }
+
+    fn check_bounce(&self, end: &ChainPosition, facet: &SegmentId, touchdown: &TouchdownState) -> Result<(), ContactFailure> {
+        let rule = self.check_contact(&end.station, Some(*facet), Contact::Landing, direction_of(touchdown.heading));
+        let stated_m_s = match rule {
+            Err(GroundRefusal::KeepOut) => return Err(ContactFailure::OffLimits),
+            Err(_) => f64::INFINITY,
+            Ok(rule) => rule.speed_max_m_s(),
+        };
+        let most_m_s = stated_m_s.min(self.test.hopper().limits().landing_speed_max_m_s);
+        if touchdown.is_over(most_m_s) { Err(ContactFailure::TooFast) } else { Ok(()) }
+    }
+
+    fn check_rest(&self, position: &ChainPosition, facet: &SegmentId, _heading: Vector2<f64>) -> Result<(), ContactFailure> {
+        self.rests(&position.station, *facet)
+    }
+
     fn displaced(
         &self,
         from: &ChainPosition,
@@ -479,16 +499,7 @@ impl FirstContact for ChainGround {
         let nominal = geometry.station(x_m).map_err(|_| ContactFailure::OffLimits)?;
         let position = self.realized(ChainPosition { station: nominal, left_m: from.left_m + sign * left_m });
         let under = position.station.ruling_segment(Contact::Landing, direction_of(heading), geometry.segment_count());
-        let refusal = under.and_then(|segment| {
-            let footprint = || self.footprint_refusal(&position.station, segment).map(GroundRefusal::Footprint);
-            self.refusal(segment.index()).or_else(footprint)
-        });
-        match refusal {
-            None => Ok(position),
-            Some(GroundRefusal::Footprint(refusal)) => Err(failure_of(&refusal)),
-            Some(GroundRefusal::KeepOut) => Err(ContactFailure::OffLimits),
-            Some(_) => Err(ContactFailure::Slides),
-        }
+        under.map_or(Ok(()), |segment| self.rests(&position.station, segment)).map(|()| position)
     }
 
     fn believed(&self, position: &ChainPosition, along_m: f64, _across_m: f64) -> Option<ChainPosition> {
@@ -499,6 +510,17 @@ impl FirstContact for ChainGround {
 }
 
 impl ChainGround {
+    /// Whether the hopper rests at a station that a segment rules.
+    fn rests(&self, at: &Station, segment: SegmentId) -> Result<(), ContactFailure> {
+        let footprint = || self.footprint_refusal(at, segment).map(GroundRefusal::Footprint);
+        match self.refusal(segment.index()).or_else(footprint) {
+            None => Ok(()),
+            Some(GroundRefusal::Footprint(refusal)) => Err(failure_of(&refusal)),
+            Some(GroundRefusal::KeepOut) => Err(ContactFailure::OffLimits),
+            Some(_) => Err(ContactFailure::Slides),
+        }
+    }
+
     /// The slope of the segment ahead in the direction of travel: its stored slope has more digits than a difference of two close
     /// heights.
     fn slope_ahead(&self, ahead: Ahead) -> f64 {

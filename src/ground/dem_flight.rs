@@ -217,6 +217,24 @@ impl FirstContact for DemGround {
         }
     }
 
+    fn gradient(&self, facet: &Gradient) -> Vector2<f64> {
+        *facet
+    }
+
+    fn check_bounce(&self, end: &MapPosition, _facet: &Gradient, touchdown: &TouchdownState) -> Result<(), ContactFailure> {
+        if self.is_kept_out(end.at - touchdown.heading * BESIDE_M) {
+            return Err(ContactFailure::OffLimits);
+        }
+        if touchdown.is_over(self.hopper().limits().landing_speed_max_m_s) {
+            return Err(ContactFailure::TooFast);
+        }
+        Ok(())
+    }
+
+    fn check_rest(&self, position: &MapPosition, facet: &Gradient, heading: Vector2<f64>) -> Result<(), ContactFailure> {
+        self.rests(position, *facet, self.friction(position.at - heading * BESIDE_M))
+    }
+
     fn displaced(
         &self,
         from: &MapPosition,

@@ -93,6 +93,28 @@ pub trait FirstContact: Surface + Clone + Send + Sync {
         touchdown: &TouchdownState,
     ) -> Result<(), ContactFailure>;
 
+    /// The gradient of a facet, in the horizontal coordinates of [`point`](Self::point). A chain does not slope to the side.
+    fn gradient(&self, facet: &Self::SupportFacet) -> Vector2<f64>;
+
+    /// Whether the ground allows a contact after the first one, from which the hopper bounces on or at which it comes to rest: outside
+    /// keep-out zones, and not faster than the landing speed limit.
+    ///
+    /// # Errors
+    /// [`ContactFailure::OffLimits`] or [`ContactFailure::TooFast`].
+    fn check_bounce(
+        &self,
+        end: &Self::Contact,
+        facet: &Self::SupportFacet,
+        touchdown: &TouchdownState,
+    ) -> Result<(), ContactFailure>;
+
+    /// Whether the hopper rests on a facet that it reached along a heading.
+    ///
+    /// # Errors
+    /// [`ContactFailure::OffLimits`] or [`ContactFailure::Slides`] where it cannot rest.
+    fn check_rest(&self, position: &Self::Contact, facet: &Self::SupportFacet, heading: Vector2<f64>)
+    -> Result<(), ContactFailure>;
+
     /// Where the hopper comes to rest after a bounce-and-roll displacement along and to the left of its heading.
     ///
     /// # Errors

@@ -1,11 +1,12 @@
 //! From the legs of a search result to the commands of single hops (P Algorithm 4).
 
-use super::{Hop, HopPath, NoCommand, Propellant, Totals, heading_deg, steps::in_steps};
+use super::{Hop, HopPath, NoCommand, Propellant, RollOut, Totals, heading_deg, steps::in_steps};
 use crate::{
     ballistics::{Arc, TakeoffChoice, delta_v_m_s, propellant_kg},
     chain::Station,
+    flight::{Command, Errors, HopDraws, Uncertainty},
     graph::{Edge, Leg},
-    ground::{DemGround, Surface},
+    ground::{ChainGround, ChainPosition, DemGround, Surface, heading_of},
     hop::{HopMargins, HopTest, SegmentHops, Split},
     quantity::{Angle, AngleInterval, SlopeInterval},
     world::{Contact, Direction, Hopper, Limit},
@@ -213,7 +214,24 @@ pub(super) fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc,
         upper_limit: binding.map_or(otherwise, |b| b.upper.limit),
         aim: None,
         margins: HopMargins::of(test, &takeoff, &landing, arc).unwrap_or(HopMargins::UNLIMITED),
+        roll_out: roll_out(test, takeoff, landing, arc),
     }
+}
+
+/// The bounces after a hop that is flown exactly; `None` for a hopper that stays where it lands.
+fn roll_out(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc) -> Option<RollOut> {
+    test.hopper().limits().restitution?;
+    let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
+    let [from, aim] = [takeoff, landing].map(ChainPosition::on_chain);
+    let command = Command::of_arc(arc, heading_of(direction), aim);
+    let errors = Errors::new(Uncertainty::NONE, false);
+    let flown = errors.fly(&ChainGround::new(test.clone()), &from, &command.liftoff, &aim, &HopDraws::default());
+    Some(RollOut {
+        bounces: flown.bounces.count,
+        distance_m: direction.sign() * (flown.rest.station.point.x_m - landing.point.x_m),
+        time_s: flown.bounces.time_s,
+        rests: flown.failure.is_none(),
+    })
 }
 
 /// The totals of hops.
@@ -228,13 +246,19 @@ fn totals(hops: &[Hop], hopper: &Hopper) -> Totals {
         let used_kg = propellant_kg(mass_kg, delta_v_m_s, isp_s);
         Propellant { used_kg, mass_end_kg: mass_kg - used_kg }
     });
+    let bounce_time_s = limits.restitution.map(|_| hops.iter().filter_map(|hop| Some(hop.roll_out?.time_s)).sum::<f64>());
+    let on_the_ground_s = match (limits.ground_time_s(hops.len()), bounce_time_s) {
+        (None, bounces_s) => bounces_s,
+        (Some(ground_time_s), bounces_s) => Some(ground_time_s + bounces_s.unwrap_or(0.0)),
+    };
     Totals {
         flight_time_s,
+        bounce_time_s,
         energy_j_kg,
         peak_takeoff_speed_m_s: hops.iter().map(|h| h.takeoff_speed_m_s).fold(0.0, f64::max),
         ground_distance_m: sum(Hop::run_m),
         energy_j: limits.mass_kg.map(|mass_kg| mass_kg * energy_j_kg),
-        mission_time_s: limits.ground_time_s(hops.len()).map(|ground_time_s| flight_time_s + ground_time_s),
+        mission_time_s: on_the_ground_s.map(|time_s| flight_time_s + time_s),
         delta_v_m_s,
         propellant,
         propellant_max_kg: limits.propellant_max_kg,

@@ -52,6 +52,21 @@ pub struct Hop {
     pub margins: HopMargins,
     /// What the command was aimed at, for a machine that takes its commands in steps.
     pub aim: Option<Aim>,
+    /// How it bounces on from its landing; `None` for a hopper that stays where it lands.
+    pub roll_out: Option<RollOut>,
+}
+
+/// The bounces after the planned landing of a hop that is flown without errors, over the chain that it was planned on, in its plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RollOut {
+    /// How many bounces.
+    pub bounces: u32,
+    /// How far beyond the landing it comes to rest, in the direction of travel, m; negative before it.
+    pub distance_m: f64,
+    /// Time from the landing to rest, s.
+    pub time_s: f64,
+    /// Whether it comes to rest on ground that holds it.
+    pub rests: bool,
 }
 
 /// The point that a hop with a command in steps is aimed at.
@@ -166,7 +181,9 @@ pub struct Totals {
     pub ground_distance_m: f64,
     /// Energy, J, if the mass is known.
     pub energy_j: Option<f64>,
-    /// Time of flights, of preparations before hops and of settling between hops, s, if one of the last two is known.
+    /// Time of bounces, s, for a hopper that bounces.
+    pub bounce_time_s: Option<f64>,
+    /// Time of flights, of bounces, of preparations before hops and of settling between hops, s, if one of the last three is known.
     pub mission_time_s: Option<f64>,
     /// Delta-v, m/s.
     pub delta_v_m_s: f64,

@@ -8,7 +8,7 @@ mod timetable;
 
 pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLimit, Violation, execute};
 pub use generate::{PathError, TooManyHops, generate, generate_over};
-pub use hop::{Aim, Hop, HopPath, Propellant, Totals, heading_deg};
+pub use hop::{Aim, Hop, HopPath, Propellant, RollOut, Totals, heading_deg};
 pub use steps::NoCommand;
 pub(crate) use steps::{SteppedGround, nearest_command};
 pub use timetable::{Phase, TimedState, Timetable, TimetableError};

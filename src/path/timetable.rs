@@ -10,6 +10,8 @@ use crate::{ballistics::Arc, quantity::MapPoint, world::HopperLimits};
 pub enum Phase {
     /// It flies.
     Flight,
+    /// It bounces after its landing. The plan goes on from the landing, and so does the table.
+    Bouncing,
     /// It rests where it landed.
     Rest,
     /// It prepares a hop.
@@ -23,6 +25,7 @@ impl Phase {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Flight => "flight",
+            Self::Bouncing => "bouncing",
             Self::Rest => "rest",
             Self::Preparation => "preparation",
             Self::Settling => "settling",
@@ -170,7 +173,7 @@ impl<'a> Timetable<'a> {
                 }
                 ticks += 1;
             }
-            if span.phase == Phase::Flight {
+            if matches!(span.phase, Phase::Flight | Phase::Bouncing) {
                 times.push(span.end_s);
                 landed_s = span.end_s;
             }
@@ -189,10 +192,11 @@ impl<'a> Timetable<'a> {
         let count = self.path.hops.len();
         let phases = self.path.hops.iter().enumerate().flat_map(move |(i, hop)| {
             let Waits { before, after } = Waits::of(&self.hopper, i + 1 == count);
-            [before, Some((Phase::Flight, hop.flight_time_s)), after]
+            let bounces = hop.roll_out.filter(|it| it.time_s > 0.0).map(|it| (Phase::Bouncing, it.time_s));
+            [before, Some((Phase::Flight, hop.flight_time_s)), bounces, after]
                 .into_iter()
                 .enumerate()
-                .filter_map(move |(place, phase)| phase.map(|(phase, lasts_s)| (i + 1, hop, phase, lasts_s, place == 2)))
+                .filter_map(move |(place, phase)| phase.map(|(phase, lasts_s)| (i + 1, hop, phase, lasts_s, place >= 2)))
         });
         phases.scan(0.0, |begin_s, (number, hop, phase, lasts_s, is_landed)| {
             let span = Span { number, hop, phase, is_landed, begin_s: *begin_s, end_s: *begin_s + lasts_s };
@@ -237,8 +241,8 @@ impl Span<'_> {
         let share = match self.phase {
             Phase::Flight if time_s >= self.end_s => 1.0,
             Phase::Flight => ((time_s - self.begin_s) / (self.end_s - self.begin_s)).max(0.0),
-            Phase::Rest | Phase::Preparation | Phase::Settling if self.is_landed => 1.0,
-            Phase::Rest | Phase::Preparation | Phase::Settling => 0.0,
+            Phase::Bouncing | Phase::Rest | Phase::Preparation | Phase::Settling if self.is_landed => 1.0,
+            Phase::Bouncing | Phase::Rest | Phase::Preparation | Phase::Settling => 0.0,
         };
         let run_m = arc.line_of_sight().run_m();
         let across_m_s = if flies { self.hop.horizontal_speed_m_s() } else { 0.0 };

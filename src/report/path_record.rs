@@ -14,7 +14,7 @@ use super::{
     stated::stated,
 };
 use crate::{
-    path::{Aim, Hop, HopPath, Totals},
+    path::{Aim, Hop, HopPath, RollOut, Totals},
     quantity::MapPoint,
     terrain::MapProjection,
     world::Direction,
@@ -73,6 +73,36 @@ pub struct HopRecord {
     /// For a machine that takes its commands in steps: what the command was aimed at.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub aim: Option<AimRecord>,
+    /// For a hopper that bounces (`[contact]`): what follows its landing.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub roll_out: Option<RollOutRecord>,
+}
+
+/// The bounces after the landing of a hop flown without errors, in the plane of the chain.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RollOutRecord {
+    /// How many bounces.
+    pub bounces: u32,
+    /// How far beyond the landing it comes to rest, in the direction of travel; negative before it.
+    pub bounce_distance_m: f64,
+    /// Time from the landing to rest.
+    pub bounce_time_s: f64,
+    /// Whether the ground where its bounces end holds it.
+    pub bounce_rests: bool,
+}
+
+impl From<&RollOut> for RollOutRecord {
+    fn from(roll_out: &RollOut) -> Self {
+        let &RollOut { bounces, distance_m, time_s, rests } = roll_out;
+        Self { bounces, bounce_distance_m: unsigned_zero(distance_m), bounce_time_s: unsigned_zero(time_s), bounce_rests: rests }
+    }
+}
+
+impl From<&RollOutRecord> for RollOut {
+    fn from(record: &RollOutRecord) -> Self {
+        let &RollOutRecord { bounces, bounce_distance_m: distance_m, bounce_time_s: time_s, bounce_rests: rests } = record;
+        Self { bounces, distance_m, time_s, rests }
+    }
 }
 
 /// The point that a command in steps was aimed at.
@@ -205,7 +235,10 @@ pub struct TotalsRecord {
     /// Energy, if the mass is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy_j: Option<f64>,
-    /// Time in flight, of preparations and of settling between hops, if one of the last two is given.
+    /// Time of bounces after landings, if the hopper bounces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bounce_time_s: Option<f64>,
+    /// Time in flight, of bounces, of preparations and of settling between hops, if one of the last three is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mission_time_s: Option<f64>,
     /// `store` where the energies are more than those of motion: with an efficiency or a preparation energy.
@@ -269,6 +302,7 @@ impl HopRecord {
             success_estimated: None,
             stores: hop.into(),
             aim: hop.aim.as_ref().map(AimRecord::from),
+            roll_out: hop.roll_out.as_ref().map(RollOutRecord::from),
         }
     }
 }
@@ -281,6 +315,7 @@ impl From<&Totals> for TotalsRecord {
             peak_takeoff_speed_m_s: totals.peak_takeoff_speed_m_s,
             ground_distance_m: unsigned_zero(totals.ground_distance_m),
             energy_j: totals.energy_j.map(unsigned_zero),
+            bounce_time_s: totals.bounce_time_s.map(unsigned_zero),
             mission_time_s: totals.mission_time_s.map(unsigned_zero),
             energy_basis: totals.of_store.then_some(EnergyBasis::Store),
             delta_v_m_s: unsigned_zero(totals.delta_v_m_s),
@@ -378,6 +413,9 @@ const AIM_COLUMNS: [&str; 2] = ["aim_x_m", "landing_miss_m"];
 /// The additional columns of hops beside the line.
 const BESIDE_COLUMNS: [&str; 3] = ["landing_miss_across_m", "aim_map_x_m", "aim_map_y_m"];
 
+/// The additional columns of a hopper that bounces.
+const BOUNCE_COLUMNS: [&str; 3] = ["bounces", "bounce_distance_m", "bounce_time_s"];
+
 /// The columns that only some paths have.
 #[derive(Clone, Copy)]
 struct ExtraColumns {
@@ -387,13 +425,16 @@ struct ExtraColumns {
     aims: bool,
     /// Of hops beside the line, if some hop is one.
     beside: bool,
+    /// Of bounces, if the hopper bounces.
+    bounces: bool,
 }
 
 impl ExtraColumns {
     fn of<'a>(mut rows: impl Iterator<Item = &'a HopRecord> + Clone) -> Self {
         let stores = stores_columns(rows.clone());
         let aims = rows.clone().any(|row| row.aim.is_some());
-        Self { stores, aims, beside: rows.any(|row| row.aim.is_some_and(|aim| aim.beside.is_some())) }
+        let bounces = rows.clone().any(|row| row.roll_out.is_some());
+        Self { stores, aims, bounces, beside: rows.any(|row| row.aim.is_some_and(|aim| aim.beside.is_some())) }
     }
 }
 
@@ -403,9 +444,9 @@ fn columns(known: MapKnowledge, extra: ExtraColumns) -> Vec<String> {
     let projection: &[&str] = if known >= MapKnowledge::Projection { &PROJECTION_COLUMNS } else { &[] };
     let aims: &[&str] = if extra.aims { &AIM_COLUMNS } else { &[] };
     let beside: &[&str] = if extra.beside { &BESIDE_COLUMNS } else { &[] };
-    let own =
-        COLUMNS.iter().chain(extra.stores).chain(map).chain(projection).chain(aims).chain(beside).map(|&column| column.to_owned());
-    own.chain(HopMarginsRecord::columns()).collect()
+    let bounces: &[&str] = if extra.bounces { &BOUNCE_COLUMNS } else { &[] };
+    let own = COLUMNS.iter().chain(extra.stores).chain(map).chain(projection).chain(aims).chain(beside).chain(bounces);
+    own.map(|&column| column.to_owned()).chain(HopMarginsRecord::columns()).collect()
 }
 
 impl HopRecord {
@@ -451,6 +492,11 @@ impl HopRecord {
         if extra.beside {
             let beside = self.aim.and_then(|aim| aim.beside);
             fields.extend(texts(beside.map(|aim| [aim.landing_miss_across_m, aim.aim_map_x_m, aim.aim_map_y_m])));
+        }
+        if extra.bounces {
+            let bounces =
+                self.roll_out.map(|bounces| [f64::from(bounces.bounces), bounces.bounce_distance_m, bounces.bounce_time_s]);
+            fields.extend(texts(bounces));
         }
         fields.extend(self.margins.fields());
         fields

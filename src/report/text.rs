@@ -418,6 +418,9 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
     if let Some(energy_j) = totals.energy_j {
         sheet.line(format_args!("energy {energy_j:.4} J"));
     }
+    if let Some(bounce_time_s) = totals.bounce_time_s {
+        sheet.line(format_args!("bounces {bounce_time_s:.3} s after the landings"));
+    }
     if let Some(mission_time_s) = totals.mission_time_s {
         sheet.line(format_args!("mission time {mission_time_s:.3} s"));
     }

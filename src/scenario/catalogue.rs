@@ -5,7 +5,7 @@ use crate::{
     graph::{Effort, ReliabilityUse},
     hop::Split,
     uncertainty::Policy,
-    world::{ClearanceRule, LandingMode, SpeedLevels},
+    world::{ClearanceRule, LandingMode, RESTITUTION_MAX, SpeedLevels},
 };
 
 /// The kind of value that a key takes.
@@ -123,6 +123,7 @@ pub(super) const SPEED_LEAST: f64 = 1e-9;
 pub(super) const SPEED_MOST: f64 = 1e5;
 const SPEED: Kind = Kind::Number { min: SPEED_LEAST, max: SPEED_MOST };
 const LENGTH: Kind = Kind::Number { min: 1e-9, max: 1e9 };
+const RESTITUTION: Kind = Kind::Number { min: 0.0, max: RESTITUTION_MAX };
 const FROM_ZERO: Kind = Kind::Number { min: 0.0, max: 1e9 };
 const STEP_ANGLE: Kind = Kind::Number { min: 1e-6, max: 90.0 };
 const COORDINATE: Kind = Kind::Number { min: -1e12, max: 1e12 };
@@ -142,7 +143,7 @@ const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 73] = [
+pub const CATALOGUE: [Key; 76] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -243,6 +244,24 @@ pub const CATALOGUE: [Key; 73] = [
         "keep_out",
         Kind::Text,
         "GeoJSON polygons or mask raster on the dem's map, path from this file: no take-off, no landing",
+    ),
+    key(
+        "contact",
+        "restitution_normal",
+        RESTITUTION,
+        "share of the speed along the ground's normal that a contact returns, for bounces after a landing in trials and estimates; 0: none",
+    ),
+    key(
+        "contact",
+        "restitution_tangential",
+        RESTITUTION,
+        "share of the speed along the ground that a contact leaves; beside restitution_normal",
+    ),
+    key(
+        "contact",
+        "settle_speed_m_s",
+        SPEED,
+        "a hopper that would bounce off more slowly than this is at rest, m/s; absent: sqrt(g x 1 cm), whose bounces are below 1 cm",
     ),
     key("terrain", "dem", Kind::Text, "elevation raster, path from this file"),
     key("terrain", "mesh", Kind::Text, "triangulated surface, z up, path from this file"),
@@ -352,6 +371,8 @@ mod tests {
             "friction_coefficient",
             "clearance_taper",
             "efficiency",
+            "restitution_normal",
+            "restitution_tangential",
             "points_per_segment",
             "mesh_scale",
             "no_data",

@@ -17,6 +17,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     tables.insert("body".to_owned(), body(scenario));
     tables.insert("hopper".to_owned(), hopper(scenario));
     tables.insert("surface".to_owned(), surface(scenario, named));
+    tables.insert("contact".to_owned(), contact(scenario));
     tables.insert("terrain".to_owned(), terrain(scenario, named));
     tables.insert("search".to_owned(), search(scenario));
     tables.insert("uncertainty".to_owned(), scenario.uncertainty.as_ref().map_or_else(|| json!({}), uncertainty));
@@ -109,6 +110,15 @@ fn surface(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         ),
         ("friction_raster", scenario.friction_raster.as_deref().map(|path| named(path).into())),
         ("keep_out", scenario.keep_out.as_deref().map(|path| named(path).into())),
+    ])
+}
+
+fn contact(scenario: &Scenario) -> Value {
+    let restitution = scenario.hopper.limits().restitution;
+    object([
+        ("restitution_normal", restitution.map(|restitution| restitution.normal().into())),
+        ("restitution_tangential", restitution.map(|restitution| restitution.tangential().into())),
+        ("settle_speed_m_s", restitution.and_then(|restitution| restitution.stated_settling_speed_m_s()).map(Value::from)),
     ])
 }
 

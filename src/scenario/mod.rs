@@ -2,6 +2,7 @@
 
 mod backslashes;
 mod catalogue;
+mod contact;
 mod document;
 mod entries;
 mod file_kind;

@@ -271,6 +271,7 @@ fn hopper(entries: &mut Entries) -> Hopper {
         _ => taper.map_or(ClearanceRule::TAPERED, ClearanceRule::Tapered),
     };
     let landing = landing(entries);
+    let restitution = super::contact::restitution(entries);
     let number = |name| entries.number("hopper", name);
     let limits = HopperLimits {
         takeoff_speed_max_m_s: number("takeoff_speed_max_m_s").unwrap_or(f64::INFINITY),
@@ -300,6 +301,7 @@ fn hopper(entries: &mut Entries) -> Hopper {
         settling_time_s: number("settling_time_s"),
         preparation_energy_j: number("preparation_energy_j"),
         efficiency: number("efficiency"),
+        restitution,
     };
     if let (Some(min), Some(max)) = (limits.takeoff_angle_min, limits.takeoff_angle_max)
         && min > max

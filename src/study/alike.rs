@@ -9,7 +9,7 @@ use crate::{
 /// Whether two scenarios put the same limits on every hop between the same ends over the same points: ground, hopper and gravity.
 ///
 /// Speed limits are compared after the segments' own limits are applied, so one beyond the chain's limits makes no difference. What
-/// only counts in totals (mass, propellant, times, energies) is ignored.
+/// only counts in totals (mass, propellant, times, energies) or after a landing (bounces) is ignored.
 pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &Prepared)) -> bool {
     let machine = |hopper: &Hopper| HopperLimits {
         takeoff_speed_max_m_s: 0.0,
@@ -23,6 +23,7 @@ pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &P
         settling_time_s: None,
         preparation_energy_j: None,
         efficiency: None,
+        restitution: None,
         ..*hopper.limits()
     };
     machine(&a.hopper) == machine(&b.hopper)

@@ -134,7 +134,7 @@ impl Searched {
         Ok(Some(Estimate {
             success,
             margins: path.hops.iter().zip(&scatters).map(of_hop).collect(),
-            of_hops: simulation.hop_successes(),
+            of_hops: simulation.hop_successes(keys.policy),
         }))
     }
 

@@ -9,7 +9,7 @@ use crate::{
     graph::{Answer, Cost, Outcome, PointSpacing, RefusalCounts},
     ground::{ContactPoint, Surface},
     hop::HopTest,
-    path::{Aim, Hop, HopPath, Violation},
+    path::{Aim, Hop, HopPath, RollOut, Violation},
     quantity::{Angle, AngleInterval, MapPoint},
     report::{CheckAnswer, DocumentKind, HopRecord, InputFile, PlanAnswer, TotalsRecord},
     world::Direction,
@@ -196,5 +196,6 @@ fn hop_of(test: &HopTest, row: &HopRecord, beside: bool) -> Result<Hop, ReadBack
         upper_limit: row.binding.upper,
         margins: row.margins.0,
         aim: aim.transpose()?,
+        roll_out: row.roll_out.as_ref().map(RollOut::from),
     })
 }

@@ -1,33 +1,41 @@
 //! How reliably every planned hop is flown by itself.
 
 use super::{
-    Simulation,
+    Policy, Simulation,
     simulation::GroundAndPlan,
     trial::{Plan, PlannedHop},
 };
 use crate::{
     flight::{HopTrials, JudgedHop, REPORTED_DRAWS},
-    ground::FirstContact,
+    ground::{FirstContact, Windows},
 };
 
 impl Simulation {
     /// The share of 256 fixed draws of its errors that every planned hop survives, begun at its planned take-off: from 0 to 1.
     ///
     /// A draw fails if the hop takes off out of its cone, leaves the known ground, lands out of its cone or too fast, or cannot rest where
-    /// it lands. How far from the goal the last hop rests does not count. The product over the hops is not the success of the path: friction
+    /// it lands. Under replanning a hop aims short by its nominal bounces. How far from the goal the last hop rests does not count. The product over the hops is not the success of the path: friction
     /// and heights are one draw for all of them, and a hop that is planned anew is another hop. See
     /// [`estimated_success`](Self::estimated_success) for that.
-    pub fn hop_successes(&self) -> Vec<f64> {
+    pub fn hop_successes(&self, policy: Policy) -> Vec<f64> {
         match &self.ground_and_plan {
-            GroundAndPlan::Chain(ground, plan) => self.successes(ground, plan, ground.test().chain().geometry().vertices().len()),
-            GroundAndPlan::Map(ground, plan) => self.successes(ground, plan, 1),
+            GroundAndPlan::Chain(ground, plan) => {
+                self.successes(policy, ground, plan, ground.test().chain().geometry().vertices().len())
+            }
+            GroundAndPlan::Map(ground, plan) => self.successes(policy, ground, plan, 1),
         }
     }
 
-    fn successes<G: FirstContact>(&self, ground: &G, plan: &Plan<G::Contact>, points: usize) -> Vec<f64> {
+    fn successes<G: FirstContact + Windows>(&self, policy: Policy, ground: &G, plan: &Plan<G::Contact>, points: usize) -> Vec<f64> {
         let trials = HopTrials::new(ground, &self.uncertainty, points, REPORTED_DRAWS);
         let success = |hop: &PlannedHop<G::Contact>| {
-            let judged = JudgedHop { from: hop.from, command: hop.command, takeoff_sigma_m: [0.0; 2], goal: None };
+            let judged = JudgedHop {
+                from: hop.from,
+                command: hop.command,
+                takeoff_sigma_m: [0.0; 2],
+                goal: None,
+                aims_at_rest: policy == Policy::Replan,
+            };
             let survival = trials.survival(&judged, u32::MAX);
             f64::from(survival.of - survival.failed) / f64::from(survival.of)
         };

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //!   trial n -> draws (seed, n) -> hop by hop:
-//!     command + errors -> take-off checked -> first contact -> landing checked -> bounce and roll
+//!     command + errors -> take-off checked -> first contact -> landing checked -> bounces -> bounce and roll
 //! ```
 //!
 //! Along a chain, flights stay in its vertical plane; over a DEM ([`DemGround`](crate::ground::DemGround)) they follow their
@@ -14,7 +14,7 @@
 //!
 //! # What is checked, and what is not
 //! At the take-off, the actual direction against the cone of the ground there. At the actual landing, direction, speed and rest
-//! slope. Where the robot comes to rest, the rest slope and keep-out zones. A cone is that of friction about the normal of the
+//! slope. At contacts after a bounce, speed and keep-out zones. Where the robot comes to rest, the rest slope and keep-out zones. A cone is that of friction about the normal of the
 //! actual facet, or the angles stated for the segment. The first contact is with the ground itself: the clearance is a margin of
 //! the plan. The machine's own limits (speed, angle, height and time of flight) apply to commands, not to errors of their
 //! execution.

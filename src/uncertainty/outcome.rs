@@ -38,12 +38,12 @@ pub enum TrialOutcome {
     /// has one, allows no take-off.
     SlidAtTakeoff,
     /// The actual direction of a landing was outside the cone of the ground there, or the ground at the landing or at the place of
-    /// rest is too steep to rest on, or under the hopper's footprint too steep or too rough.
+    /// rest is too steep to rest on, or under the hopper's footprint too steep or too rough; or its bounces did not end.
     SlidAtLanding,
-    /// It met the ground faster than its landing speed limit.
+    /// It met the ground faster than its landing speed limit, at its first contact or after a bounce.
     Damaged,
-    /// It left the chain, its plane of travel (past a bend) or the map, met no-data, came down or to rest in a keep-out zone, or left
-    /// the body: an error made its take-off faster than escape.
+    /// It left the chain, its plane of travel (past a bend) or the map, met no-data, came down, bounced or came to rest in a keep-out zone,
+    /// or left the body: an error made its take-off faster than escape, or it bounced off so fast.
     Lost,
     /// No hop leads on from its estimated position (replan).
     Stuck,

@@ -31,8 +31,12 @@ pub struct HopRecord {
     pub planned_m: Point3<f64>,
     /// The first contact with the ground; for a hop that did not land, where it left the known ground in flight.
     pub contact_m: Point3<f64>,
-    /// Where it came to rest after the bounce-and-roll displacement; the contact itself if the trial ended with it.
+    /// Where it came to rest after its bounces and the bounce-and-roll displacement; the last contact if the trial ended with it.
     pub rest_m: Point3<f64>,
+    /// How many bounces it flew after its first contact.
+    pub bounces: u32,
+    /// Time from the first contact to the last, s.
+    pub bounce_time_s: f64,
     /// Horizontal distance from the planned landing to the position of rest, m.
     pub error_m: f64,
     /// The errors that were drawn for it.

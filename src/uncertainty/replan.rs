@@ -27,7 +27,7 @@ fn in_steps<G: SteppedGround>(
     choice: TakeoffChoice,
 ) -> Option<Command<G::Contact>> {
     let nearest = nearest_command(ground, takeoff, aim, choice)?;
-    Some(Command { liftoff: nearest.liftoff, speed_m_s: nearest.speed_m_s, aim: nearest.landing })
+    Some(Command { liftoff: nearest.liftoff, speed_m_s: nearest.speed_m_s, aim: nearest.landing, rest: nearest.landing })
 }
 
 /// Replanning along a chain, by the costs-to-go of its nodes.

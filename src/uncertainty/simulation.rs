@@ -15,7 +15,8 @@ use super::{
 use crate::{
     flight::{Command, Errors, TrialDraws, Uncertainty},
     ground::{
-        ChainGround, ChainPosition, ContactPoint, DemGround, FirstContact, LiftoffVelocity, MapPosition, Surface, heading_of,
+        ChainGround, ChainPosition, ContactPoint, DemGround, FirstContact, LiftoffVelocity, MapPosition, Surface, Windows,
+        heading_of,
     },
     path::Hop,
     progress::{Detail, Meter, Progress, Stage},
@@ -223,7 +224,7 @@ impl Simulation {
         Ok(())
     }
 
-    fn fly_all<G: FirstContact>(
+    fn fly_all<G: FirstContact + Windows>(
         &self,
         ground: &G,
         plan: &Plan<G::Contact>,
@@ -257,12 +258,12 @@ impl Simulation {
             let end = last.min(done.saturating_add(BATCH));
             let starts: Vec<u64> = (done..end).step_by(usize::try_from(STRETCH).unwrap_or(usize::MAX)).collect();
             let stretch = |first: u64| {
-                let mut ground = ground.clone();
+                let mut realized = ground.clone();
                 let mut draws = TrialDraws::seeded(options.seed);
                 let mut flown = Flown::default();
                 for trial in first..end.min(first + STRETCH) {
                     let keep = keep_records || trial - options.first_trial < options.trajectories;
-                    fly(&mut ground, &mut draws, plan, &rules, trial, keep, &mut flown);
+                    fly((ground, &mut realized), &mut draws, plan, &rules, trial, keep, &mut flown);
                 }
                 flown
             };
@@ -316,11 +317,11 @@ fn flown<G: FirstContact>(ground: &G, from: &G::Contact, liftoff: &LiftoffVeloci
 }
 
 /// The command of a planned hop along a heading.
-fn command<C>(hop: &Hop, heading: Vector2<f64>, aim: C) -> Command<C> {
+fn command<C: Copy>(hop: &Hop, heading: Vector2<f64>, aim: C) -> Command<C> {
     let (sine, cosine) = libm::sincos(hop.takeoff_angle.radians());
     let speed_m_s = hop.takeoff_speed_m_s;
     let liftoff = LiftoffVelocity { heading, horizontal_m_s: speed_m_s * cosine, vertical_m_s: speed_m_s * sine };
-    Command { liftoff, speed_m_s, aim }
+    Command { liftoff, speed_m_s, aim, rest: aim }
 }
 
 /// The plan along a chain.

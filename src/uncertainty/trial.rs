@@ -5,8 +5,8 @@ use nalgebra::{Point2, Point3};
 use super::{DrawnErrors, HopRecord, Policy, TrialOutcome, TrialRecord, replan::Replan};
 use crate::{
     ballistics::{delta_v_of_m_s, propellant_kg},
-    flight::{Command, Errors, FlownHop, HopDraws, TrialDraws},
-    ground::{ContactFailure, FirstContact, LiftoffVelocity},
+    flight::{Command, Errors, FlownHop, HopDraws, TrialDraws, resting_at},
+    ground::{ContactFailure, FirstContact, LiftoffVelocity, Windows},
     world::HopperLimits,
 };
 
@@ -83,9 +83,9 @@ pub(super) struct Flown {
     pub(super) hops: Vec<HopRecord>,
 }
 
-/// Flies one trial.
-pub(super) fn fly<G: FirstContact>(
-    ground: &mut G,
+/// Flies one trial. `grounds`: the nominal one, which the robot knows, and the one of this trial.
+pub(super) fn fly<G: FirstContact + Windows>(
+    grounds: (&G, &mut G),
     draws: &mut TrialDraws,
     plan: &Plan<G::Contact>,
     rules: &Rules,
@@ -93,13 +93,14 @@ pub(super) fn fly<G: FirstContact>(
     keep_hops: bool,
     flown: &mut Flown,
 ) {
+    let (nominal, ground) = grounds;
     let mut friction = 0.0;
     if let Some(realization) = rules.errors.realization(draws, trial) {
         friction = realization.friction;
         ground.realize(realization);
     }
     draws.begin(trial);
-    let mut journey = Journey { ground, plan, rules, position: ground.realized(plan.start), hops: 0, used_kg: 0.0 };
+    let mut journey = Journey { nominal, ground, plan, rules, position: ground.realized(plan.start), hops: 0, used_kg: 0.0 };
     let outcome = loop {
         let drawn = rules.errors.draw(draws);
         let command = match journey.decide(&drawn) {
@@ -120,7 +121,7 @@ pub(super) fn fly<G: FirstContact>(
             };
             journey.used_kg = used_kg;
         }
-        let ended = journey.land(&liftoff, &command.aim, hop, |landing, hop| {
+        let ended = journey.land(&liftoff, &command.rest, hop, |landing, hop| {
             flown.landings.extend(landing);
             if keep_hops {
                 let drawn = rules.errors.drawn(command.speed_m_s, &drawn, friction);
@@ -142,6 +143,8 @@ pub(super) fn fly<G: FirstContact>(
 
 /// A trial in progress.
 struct Journey<'t, G: FirstContact> {
+    /// The ground as the robot knows it.
+    nominal: &'t G,
     ground: &'t G,
     plan: &'t Plan<G::Contact>,
     rules: &'t Rules,
@@ -151,7 +154,7 @@ struct Journey<'t, G: FirstContact> {
     used_kg: f64,
 }
 
-impl<G: FirstContact> Journey<'_, G> {
+impl<G: FirstContact + Windows> Journey<'_, G> {
     /// The next command, or the outcome of a journey that ends here.
     fn decide(&self, drawn: &HopDraws) -> Result<Command<G::Contact>, TrialOutcome> {
         let planned = usize::try_from(self.hops).ok().and_then(|hop| self.plan.hops.get(hop));
@@ -164,10 +167,12 @@ impl<G: FirstContact> Journey<'_, G> {
                     return Err(self.arrived());
                 }
                 // At a planned position the planned hop is optimal.
-                match planned {
+                let command = match planned {
                     Some(hop) if hop.from == believed => Ok(hop.command),
                     _ => self.plan.replan.as_ref().and_then(|replan| replan.next(&believed)).ok_or(TrialOutcome::Stuck),
-                }
+                };
+                // A robot that bounces aims short.
+                command.map(|command| resting_at(self.nominal, &believed, command))
             }
         }
     }
@@ -196,7 +201,7 @@ impl<G: FirstContact> Journey<'_, G> {
     fn land(
         &mut self,
         liftoff: &LiftoffVelocity,
-        aim: &G::Contact,
+        rest_aim: &G::Contact,
         flown: FlownHop<G::Contact>,
         mut report: impl FnMut(Option<Landing>, &dyn Fn() -> HopRecord),
     ) -> Option<TrialOutcome> {
@@ -204,7 +209,7 @@ impl<G: FirstContact> Journey<'_, G> {
         let from = self.position;
         let FlownHop { rest, landed, .. } = flown;
         let outcome = flown.failure.map(outcome_of);
-        let (aim_m, rest_m) = (ground.point(aim), ground.point(&rest));
+        let (aim_m, rest_m) = (ground.point(rest_aim), ground.point(&rest));
         let error_m = (rest_m - aim_m).xy().norm();
         let landing = landed.then(|| Landing { hop: self.hops, error_m, rest: rest_m.xy() });
         self.hops += 1;
@@ -221,6 +226,8 @@ impl<G: FirstContact> Journey<'_, G> {
             planned_m: aim_m,
             contact_m: self.end_of_flight(&flown.end, &from, liftoff, flown.time_s, landed),
             rest_m,
+            bounces: flown.bounces.count,
+            bounce_time_s: flown.bounces.time_s,
             error_m,
             drawn: DrawnErrors::default(),
             landed,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{CommandSteps, Gravity, LandingMode, SpeedLevels, propulsion, steps};
+use super::{CommandSteps, Gravity, LandingMode, Restitution, SpeedLevels, propulsion, steps};
 use crate::quantity::Angle;
 
 /// Where a hopper keeps its clearance.
@@ -93,6 +93,8 @@ pub struct HopperLimits {
     pub preparation_energy_j: Option<f64>,
     /// Share of the energy taken from the store that becomes motion; 1 unless given.
     pub efficiency: Option<f64>,
+    /// How it bounces after its first contact, in trials; `None`: it stays where it lands.
+    pub restitution: Option<Restitution>,
 }
 
 impl HopperLimits {
@@ -121,6 +123,7 @@ impl HopperLimits {
         settling_time_s: None,
         preparation_energy_j: None,
         efficiency: None,
+        restitution: None,
     };
 
     /// The two speed limits that every analysis needs, without other limits.
@@ -238,6 +241,8 @@ impl Hopper {
             settling_time_s: _,
             preparation_energy_j: _,
             efficiency: _,
+            // Valid by construction.
+            restitution: _,
         } = limits;
         let speed = |number: f64| number > 0.0;
         // The bound is a right angle in radians: 90 in degrees may be rounded.

@@ -8,6 +8,7 @@ mod installed;
 mod tower;
 
 mod bends;
+mod bounces;
 mod cli_answers;
 mod cli_bad_input;
 mod cli_options;

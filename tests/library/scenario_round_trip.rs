@@ -127,7 +127,11 @@ fn sensible_hopper<'a>(keys: &[(&'a Key, Option<String>)]) -> Vec<(&'a Key, Opti
         "rest_time_s" => !newer,
         _ => true,
     };
+    // Both coefficients or none.
+    let is_given = |name: &str| keys.iter().any(|(key, value)| (key.table, key.name) == ("contact", name) && value.is_some());
+    let bounces = is_given("restitution_normal") && is_given("restitution_tangential");
     let fitting = keys.iter().map(|(key, value)| match (key.table, key.name) {
+        ("contact", _) if !bounces => (*key, None),
         ("hopper", "landing") if brakes => (*key, Some("\"braked\"".to_owned())),
         ("hopper", name) if !fits(name) => (*key, None),
         _ => (*key, value.clone()),
@@ -215,6 +219,10 @@ fn every_key_reaches_the_document() {
             ("uncertainty", "height_sigma_m") => with("uncertainty", "height_correlation_m", "3"),
             ("uncertainty", "height_correlation_m") => with("uncertainty", "height_sigma_m", "3"),
             ("hopper", "roughness_max_m") => with("hopper", "footprint_m", "3"),
+            ("contact", _) => {
+                with("contact", "restitution_normal", "0.25");
+                with("contact", "restitution_tangential", "0.25");
+            }
             ("search", "risk_extra_hops_max") => with("search", "risk", "traded"),
             _ => {}
         }

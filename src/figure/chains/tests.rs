@@ -353,6 +353,7 @@ fn hop_profile(i: usize, hops: usize) -> HopProfile {
         upper_limit: Limit::TakeoffSpeed,
         aim: None,
         margins: crate::hop::HopMargins::UNLIMITED,
+        roll_out: None,
     };
     HopProfile {
         heading_true_deg: Some(80.6),

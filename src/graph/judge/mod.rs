@@ -142,6 +142,11 @@ impl Judge {
         }
     }
 
+    /// Whether the robot makes the command of every hop anew where it is.
+    const fn replans(&self) -> bool {
+        matches!(self.takeoffs, TakeoffScatter::OfPosition)
+    }
+
     /// Whether the risk of an edge depends on the hops before it.
     pub(super) const fn depends_on_hops_before(&self) -> bool {
         matches!((self.takeoffs, &self.trials), (TakeoffScatter::OfLandings, Trials::Chain(_) | Trials::Map(..)))
@@ -189,7 +194,7 @@ impl Judge {
         Some(self.most_reliable(sight, lofts, |loft, enough| {
             let command = Command::of_arc(&Arc::new(sight, loft, self.test.gravity_m_s2()), heading, *to);
             let takeoff_sigma_m = [self.position_sigma_m; 2];
-            over.0.survival(&JudgedHop { from: *from, command, takeoff_sigma_m, goal: None }, enough)
+            over.0.survival(&JudgedHop { from: *from, command, takeoff_sigma_m, goal: None, aims_at_rest: true }, enough)
         }))
     }
 
@@ -255,7 +260,7 @@ impl Judge {
         let [from, aim] = [planned.takeoff, planned.landing].map(ChainPosition::on_chain);
         let command = Command::of_arc(&self.arc(planned, loft), heading_of(direction), aim);
         let goal = self.tolerance_m.filter(|_| planned.is_last).map(|m| (Point2::new(planned.landing.point.x_m, 0.0), m));
-        Some(JudgedHop { from, command, takeoff_sigma_m: planned.takeoff_m2.map(f64::sqrt), goal })
+        Some(JudgedHop { from, command, takeoff_sigma_m: planned.takeoff_m2.map(f64::sqrt), goal, aims_at_rest: self.replans() })
     }
 
     /// The hop over the map; `None` where a station lies on no map, or off the ground.
@@ -269,7 +274,7 @@ impl Judge {
         let heading = (aim.at - from.at).try_normalize(0.0)?;
         let command = Command::of_arc(&self.arc(planned, loft), heading, aim);
         let goal = self.tolerance_m.filter(|_| planned.is_last).map(|m| (aim.at, m));
-        Some(JudgedHop { from, command, takeoff_sigma_m: planned.takeoff_m2.map(f64::sqrt), goal })
+        Some(JudgedHop { from, command, takeoff_sigma_m: planned.takeoff_m2.map(f64::sqrt), goal, aims_at_rest: self.replans() })
     }
 
     fn arc(&self, planned: &Planned, loft: f64) -> Arc {

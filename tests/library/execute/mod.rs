@@ -188,6 +188,7 @@ fn flown_over_the_needle(m: f64, clearance_m: f64, change: Change) -> (Option<Fl
         upper_limit: Limit::TakeoffCone,
         aim: None,
         margins: chta::hop::HopMargins::UNLIMITED,
+        roll_out: None,
     };
     change(&mut hop);
     let execution = execute(&chain, &HopPath { hops: vec![hop], totals: Totals::default() }, None);
