@@ -1,5 +1,6 @@
 //! The errors of execution, as standard deviations.
 
+use super::ErrorKey;
 use crate::quantity::Angle;
 
 /// Standard deviations of all errors of a hop's execution; zero means no error.
@@ -136,6 +137,29 @@ impl Uncertainty {
             ("height_sigma_m", self.height_sigma_m, "m"),
             ("height_correlation_m", self.height_correlation_m, "m"),
         ]
+    }
+
+    /// Whether there is such an error.
+    pub fn has(&self, key: ErrorKey) -> bool {
+        self.without(key) != *self
+    }
+
+    /// The same without one error. The correlation length goes with the error of heights.
+    #[must_use]
+    pub fn without(&self, key: ErrorKey) -> Self {
+        let mut rest = *self;
+        match key {
+            ErrorKey::TakeoffSpeed => rest.takeoff_speed_sigma_m_s = 0.0,
+            ErrorKey::TakeoffSpeedFraction => rest.takeoff_speed_sigma_fraction = 0.0,
+            ErrorKey::TakeoffAngle => rest.takeoff_angle_sigma = Angle::from_radians(0.0),
+            ErrorKey::Heading => rest.heading_sigma = Angle::from_radians(0.0),
+            ErrorKey::Position => rest.position_sigma_m = 0.0,
+            ErrorKey::DriftAlong => rest.drift_along_sigma_m = 0.0,
+            ErrorKey::DriftAcross => rest.drift_across_sigma_m = 0.0,
+            ErrorKey::Friction => rest.friction_sigma = 0.0,
+            ErrorKey::Height => (rest.height_sigma_m, rest.height_correlation_m) = (0.0, 0.0),
+        }
+        rest
     }
 
     /// All deviations multiplied by a factor; the correlation length of heights is no deviation and stays.

@@ -4,11 +4,13 @@
 
 mod deviations;
 mod draws;
+mod error_key;
 mod hop;
 mod hop_trials;
 mod quasi;
 
 pub use deviations::{Uncertainty, UncertaintyProblem};
 pub(crate) use draws::{HopDraws, TrialDraws};
+pub use error_key::ErrorKey;
 pub(crate) use hop::{Command, Errors, FlownHop};
 pub(crate) use hop_trials::{HopTrials, JudgedHop, Survival};

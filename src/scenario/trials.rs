@@ -164,3 +164,19 @@ impl Scenario {
         ReliabilityOptions { model, extra_hops_max, goal_tolerance_m }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{scenario::CATALOGUE, uncertainty::ErrorKey};
+
+    #[test]
+    fn every_error_is_a_key_and_every_other_key_says_how_trials_are_flown() {
+        let no_error = ["height_correlation_m", "goal_tolerance_m", "hop_limit", "policy", "trials", "seed"];
+        let keys = CATALOGUE.iter().filter(|key| key.table == "uncertainty" && !no_error.contains(&key.name));
+        let mut names: Vec<&str> = keys.map(|key| key.name).collect();
+        names.sort_unstable();
+        let mut errors = ErrorKey::ALL.map(ErrorKey::name);
+        errors.sort_unstable();
+        assert_eq!(names, errors);
+    }
+}
