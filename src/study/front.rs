@@ -42,7 +42,7 @@ impl FlownJourney<'_> {
             Some(to_go) => mission.with_replanning(self.test.clone(), Arc::clone(to_go)),
             None => mission,
         };
-        Ok(Simulation::new(&mission, self.scenario.uncertainty.unwrap_or_default().errors)?)
+        Ok(Simulation::new(&mission, self.scenario.uncertainty.clone().unwrap_or_default().errors)?)
     }
 
     /// The costs by which trials replan over the nodes of an answer, with as many hops more than the fewest as its path has.
@@ -78,7 +78,8 @@ impl FlownJourney<'_> {
         progress: &dyn Progress,
     ) -> Result<(), SimulateError> {
         let is_path = matches!(found.outcome, Outcome::Path { .. });
-        let Some((keys, fewest)) = self.scenario.uncertainty.filter(|_| is_path).zip(front.first().map(|path| path.cost.hops()))
+        let Some((keys, fewest)) =
+            self.scenario.uncertainty.as_ref().filter(|_| is_path).zip(front.first().map(|path| path.cost.hops()))
         else {
             return Ok(());
         };

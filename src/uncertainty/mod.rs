@@ -59,7 +59,7 @@ mod trial;
 mod wilson;
 
 pub use crate::{
-    flight::{ErrorKey, Uncertainty, UncertaintyProblem},
+    flight::{Distribution, ErrorKey, MeasuredErrors, Uncertainty, UncertaintyProblem},
     ground::LiftoffVelocity,
 };
 pub use mission::Mission;
