@@ -182,4 +182,27 @@ mod tests {
             }
         }
     }
+
+    /// A change of these bits changes every answer of trials.
+    #[test]
+    fn the_draws_of_a_trial_keep_their_bits() {
+        let mut draws = TrialDraws::seeded(5);
+        draws.begin(17);
+        let first = draws.hop(ALL);
+        let bits = [first.speed, first.direction, first.drift, first.position].concat();
+        let expected: [u64; 8] = [
+            0xbff7_3bc7_cae8_3833,
+            0xbfc6_eb7f_5b98_cd34,
+            0x3ff2_4a3e_4029_0c22,
+            0xbfe1_2e1e_d6f8_73a3,
+            0xbffc_7296_826b_aa62,
+            0x3ffc_2cfb_d679_9c69,
+            0xbff1_3f16_4a6e_3e8d,
+            0xbff8_2afd_8d3b_fed5,
+        ];
+        assert_eq!(bits.into_iter().map(f64::to_bits).collect::<Vec<_>>(), expected);
+        assert_eq!(draws.hop(ALL).position[1].to_bits(), 0xc005_0bcf_7235_dfc1);
+        assert_eq!(draws.friction(17).to_bits(), 0xbfc1_2ba0_d1b7_4615);
+        assert_eq!(draws.height_field(17)().to_bits(), 0x3fda_98ca_b2d5_6c58);
+    }
 }

@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use super::*;
 use crate::{
     chain::{ConstrainedChain, PolygonalChain, csv::read_measured_csv},
-    flight::MeasuredErrors,
+    flight::{ErrorKey, MeasuredErrors},
     quantity::ChainPoint,
     world::{Contact, FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
@@ -93,10 +93,13 @@ impl Case<'_> {
         };
         let geometry = test.chain().geometry();
         let failed = (0..flights).filter(|_| {
-            let mut drawn = |sigma: f64| if sigma > 0.0 { sigma * standard(&mut source) } else { 0.0 };
-            let fraction = drawn(errors.takeoff_speed_sigma_fraction) + drawn(errors.takeoff_speed_bias_sigma_fraction);
-            let turned = drawn(errors.takeoff_angle_sigma.radians()) + drawn(errors.takeoff_angle_bias_sigma.radians());
-            let along_m = drawn(errors.position_sigma_m);
+            let mut fraction = errors.takeoff_speed_sigma_fraction * standard(&mut source);
+            let mut turned = errors.takeoff_angle_sigma.radians() * standard(&mut source);
+            let along_m = errors.position_sigma_m * standard(&mut source);
+            if errors.has(ErrorKey::TakeoffSpeedBias) || errors.has(ErrorKey::TakeoffAngleBias) {
+                fraction += errors.takeoff_speed_bias_sigma_fraction * standard(&mut source);
+                turned += errors.takeoff_angle_bias_sigma.radians() * standard(&mut source);
+            }
             let row = errors.measured.as_ref().map(|measured| measured.row(source.random()));
             let (of_row, turned_of_row) = row.map_or((0.0, 0.0), |row| (row.speed_fraction, row.angle_rad));
             let speed = arc.takeoff_speed_m_s() * (1.0 + fraction + of_row);
@@ -197,16 +200,17 @@ fn the_estimate_of_biases_uniform_and_measured_errors_agrees_with_counted_flight
         ..Uncertainty::NONE
     };
     let both = Uncertainty { takeoff_speed_sigma_fraction: 0.03, distribution: Distribution::Uniform, ..biased.clone() };
-    for (what, errors) in [
-        ("uniform", uniform),
-        ("biased", biased),
-        ("both", both),
-        ("12 measured hops", measured(12)),
-        ("500 measured hops", measured(500)),
+    // Rows are one number of a draw, along which 64 draws are spread evenly: speed is, and what the rows have beside it is less.
+    for (what, errors, mean_most) in [
+        ("uniform", uniform, 0.02),
+        ("biased", biased, 0.02),
+        ("both", both, 0.02),
+        ("12 measured hops", measured(12), 0.03),
+        ("500 measured hops", measured(500), 0.03),
     ] {
         let differences = differences(&[errors]);
         let (worst, mean) = worst_and_mean(&differences);
-        assert!(differences.len() > 10 && worst < 0.08 && mean < 0.02, "{what}: {worst} {mean} of {}", differences.len());
+        assert!(differences.len() > 10 && worst < 0.08 && mean < mean_most, "{what}: {worst} {mean} of {}", differences.len());
     }
 }
 
