@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let source = fs::read_to_string(&name).map_err(|error| format!("{name}: cannot be read ({error}), expected a scenario"))?;
     let scenario = Scenario::new(Entries::from_toml(&source))
         .map_err(|problems| ScenarioProblems { name: name.clone(), source, problems }.to_string())?;
-    let trials = scenario.uncertainty.unwrap_or_default().trials;
+    let trials = scenario.uncertainty.clone().unwrap_or_default().trials;
 
     // The paths of a scenario start from its folder.
     let case = Case::new(scenario, Path::new(&name).parent().unwrap_or(Path::new("")), Commands::OfTheMachine)?;

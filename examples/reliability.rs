@@ -192,7 +192,7 @@ fn counted(planned: &Planned, hop: usize) -> Result<f64, Failure> {
             Mission::along_chain(planned.test.clone(), one, station(from)?, station(to)?)
         }
     };
-    let errors = planned.case.scenario.uncertainty.unwrap_or_default().errors;
+    let errors = planned.case.scenario.uncertainty.clone().unwrap_or_default().errors;
     let options =
         TrialOptions { trials: 100_000, goal_tolerance_m: 1e9, policy: Policy::OpenLoop, seed: 11, ..TrialOptions::default() };
     Ok(Simulation::new(&mission, errors)?.run(&options, &mut (), &())?.success.rate)

@@ -42,7 +42,7 @@ pub(crate) enum Purpose {
 }
 
 /// Keys of `[uncertainty]` that the estimate of a hop's risk uses.
-const OF_RISK: [&str; 8] = [
+const OF_RISK: [&str; 13] = [
     "takeoff_speed_sigma_m_s",
     "takeoff_speed_sigma_fraction",
     "takeoff_angle_sigma_deg",
@@ -50,6 +50,11 @@ const OF_RISK: [&str; 8] = [
     "drift_along_sigma_m",
     "friction_sigma",
     "height_sigma_m",
+    "takeoff_speed_bias_sigma_fraction",
+    "takeoff_angle_bias_sigma_deg",
+    "heading_bias_sigma_deg",
+    "distribution",
+    "errors",
     "goal_tolerance_m",
 ];
 

@@ -3,7 +3,7 @@
 use std::{fmt::Write, sync::OnceLock};
 
 use chta::{
-    chain::csv::{CHAIN_COLUMNS, CsvColumn, PAIRS_COLUMNS},
+    chain::csv::{CHAIN_COLUMNS, CsvColumn, MEASURED_COLUMNS, PAIRS_COLUMNS},
     scenario::CATALOGUE,
     terrain::{FORMATS, MESH_FORMATS},
 };
@@ -52,6 +52,7 @@ pub(super) fn command() -> Command {
         ("hop", columns("Columns of a chain CSV", &CHAIN_COLUMNS)),
         ("check", columns("Columns of a pairs CSV", &PAIRS_COLUMNS)),
         ("plan", columns("Columns of a chain CSV", &CHAIN_COLUMNS)),
+        ("simulate", columns("Columns of a CSV of measured errors (uncertainty.errors)", &MEASURED_COLUMNS)),
     ];
     for (name, list) in lists {
         command = command.mut_subcommand(name, |sub| {

@@ -360,7 +360,8 @@ impl Bounds {
             | FileKind::Mesh(_, true)
             | FileKind::ChainCsv
             | FileKind::PairsCsv
-            | FileKind::PositionsCsv => Some(LONGEST_LINE),
+            | FileKind::PositionsCsv
+            | FileKind::MeasuredCsv => Some(LONGEST_LINE),
             _ => None,
         };
         Self { most: own.min(option), reason, longest_line }
@@ -422,6 +423,7 @@ fn is_read_whole(kind: &FileKind) -> bool {
         FileKind::ChainCsv
             | FileKind::PairsCsv
             | FileKind::PositionsCsv
+            | FileKind::MeasuredCsv
             | FileKind::Mesh(..)
             | FileKind::Raster("ESRI ASCII grid" | "XYZ grid")
     )

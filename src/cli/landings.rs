@@ -79,7 +79,7 @@ impl<'a> RowFile<'a> {
 fn parquet<'a>(path: &'a Path, loaded: &Loaded, columns: LandingColumns) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
     use chta::report::landings::ParquetLandings;
 
-    let seed = loaded.case.scenario.uncertainty.unwrap_or_default().seed;
+    let seed = loaded.case.scenario.uncertainty.clone().unwrap_or_default().seed;
     let words = [
         ("chta_version", env!("CARGO_PKG_VERSION").to_owned()),
         ("scenario", loaded.record.scenario.to_string()),

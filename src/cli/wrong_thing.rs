@@ -38,6 +38,8 @@ pub(crate) enum Role {
     KeepOut,
     /// `[surface] friction_raster`.
     Friction,
+    /// `[uncertainty] errors`.
+    Errors,
 }
 
 impl Role {
@@ -49,6 +51,7 @@ impl Role {
             ("terrain", "chain") => Some(Self::ChainKey),
             ("surface", "keep_out") => Some(Self::KeepOut),
             ("surface", "friction_raster") => Some(Self::Friction),
+            ("uncertainty", "errors") => Some(Self::Errors),
             _ => None,
         }
     }
@@ -69,6 +72,7 @@ impl Role {
             Self::ChainKey => "terrain.chain",
             Self::KeepOut => "surface.keep_out",
             Self::Friction => "surface.friction_raster",
+            Self::Errors => "uncertainty.errors",
         }
     }
 
@@ -88,6 +92,9 @@ impl Role {
             Self::ChainKey => "a chain CSV",
             Self::KeepOut => "zones as GeoJSON, or a mask raster (GeoTIFF, ESRI ASCII grid)",
             Self::Friction => "a raster of friction coefficients (GeoTIFF, ESRI ASCII grid)",
+            Self::Errors => {
+                "a CSV of measured errors with columns such as takeoff_speed_error_fraction and takeoff_angle_error_deg"
+            }
         }
     }
 
@@ -99,6 +106,7 @@ impl Role {
             Self::ChainKey => Some("chain"),
             Self::KeepOut => Some("keep_out"),
             Self::Friction => Some("friction_raster"),
+            Self::Errors => Some("errors"),
             _ => None,
         }
     }
@@ -126,6 +134,7 @@ impl Role {
                 Self::Starts => *kind == Kind::PositionsCsv,
                 Self::Pairs => *kind == Kind::PairsCsv,
                 Self::Friction => of_raster,
+                Self::Errors => *kind == Kind::MeasuredCsv,
                 // The zones' reader knows the terrain's map, to which they have to be converted.
                 Self::KeepOut => of_raster || matches!(kind, Kind::GeoJson | Kind::Json | Kind::Shapes(_)),
             }

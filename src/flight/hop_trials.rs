@@ -3,7 +3,7 @@
 use nalgebra::{Point2, Vector2};
 
 use super::{
-    Command, Errors, TrialDraws, Uncertainty,
+    Command, Distribution, Errors, TrialDraws, Uncertainty,
     quasi::{FixedDraw, fixed_draws},
     resting_at,
 };
@@ -52,7 +52,9 @@ pub(crate) struct Survival {
 ///                                 on ground that holds no contact, or rests too far from the goal]
 /// ```
 ///
-/// All hops are judged by the same draws, so that two hops differ by their own risk and not by chance.
+/// All hops are judged by the same draws, so that two hops differ by their own risk and not by chance. Errors that last for a whole trial
+/// (biases, friction, heights) are drawn with the others, as a hop has them without knowledge of the hops before it; of measured errors
+/// every draw has a row.
 #[derive(Clone, Debug)]
 pub(crate) struct HopTrials<G> {
     draws: Vec<FixedDraw>,
@@ -70,11 +72,12 @@ struct Errand<G> {
 }
 
 impl<G: FirstContact + Windows> HopTrials<G> {
-    /// A number of draws of these errors over a ground that has this many points to realize.
-    pub(crate) fn new(ground: &G, uncertainty: &Uncertainty, points: usize, count: u32) -> Self {
-        let draws = fixed_draws(count);
+    /// A number of draws of these errors over a ground that has this many points to realize. `of_takeoffs`: the distribution of the take-off
+    /// position.
+    pub(crate) fn new(ground: &G, uncertainty: &Uncertainty, of_takeoffs: Distribution, points: usize, count: u32) -> Self {
+        let draws = fixed_draws(count, uncertainty.distribution, of_takeoffs);
         let errand = |uncertainty: Uncertainty| {
-            let errors = Errors::new(uncertainty, false);
+            let errors = Errors::new(uncertainty.clone(), false);
             let realizations = if uncertainty.height_sigma_m > 0.0 {
                 (REALIZED_POINTS_MAX / points.max(1)).clamp(4, draws.len())
             } else if uncertainty.friction_sigma > 0.0 {
@@ -92,7 +95,7 @@ impl<G: FirstContact + Windows> HopTrials<G> {
             let grounds = if realizations == 0 { vec![ground.clone()] } else { (0..realizations).map(realized).collect() };
             Errand { errors, grounds }
         };
-        Self { nominal: ground.clone(), plain: errand(*uncertainty), doubled: errand(uncertainty.scaled(2.0)), draws }
+        Self { nominal: ground.clone(), plain: errand(uncertainty.clone()), doubled: errand(uncertainty.scaled(2.0)), draws }
     }
 
     /// What becomes of a hop under the errors; `enough`: the count of failures after which no more draws are flown.
@@ -144,11 +147,12 @@ fn rest<G: FirstContact>(
     let scatter_m = along_m * heading + left_m * Vector2::new(-heading.y, heading.x);
     let planned = if scatter_m == Vector2::zeros() { hop.from } else { ground.believed(&hop.from, scatter_m.x, scatter_m.y)? };
     let from = ground.realized(planned);
-    let liftoff = errors.liftoff(&hop.command.liftoff, hop.command.speed_m_s, &draw.hop);
+    let drawn = errors.fixed(draw);
+    let liftoff = errors.liftoff(&hop.command.liftoff, hop.command.speed_m_s, &drawn);
     if !liftoff.stays() && !ground.holds_takeoff(&from, &liftoff) {
         return None;
     }
-    let flown = errors.fly(ground, &from, &liftoff, &hop.command.aim, &draw.hop);
+    let flown = errors.fly(ground, &from, &liftoff, &hop.command.aim, &drawn);
     if flown.failure.is_some() {
         return None;
     }

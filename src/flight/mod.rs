@@ -4,17 +4,23 @@
 
 mod bounce;
 mod deviations;
+mod distribution;
 mod draws;
 mod error_key;
 mod hop;
+mod hop_errors;
 mod hop_trials;
+mod measured;
 mod quasi;
 mod rest_aim;
 
 pub use deviations::{Uncertainty, UncertaintyProblem};
-pub(crate) use draws::{HopDraws, TrialDraws};
+pub use distribution::Distribution;
+pub(crate) use draws::TrialDraws;
 pub use error_key::ErrorKey;
-pub use hop::DrawnErrors;
-pub(crate) use hop::{Command, Errors, FlownHop};
+pub(crate) use hop::{Command, FlownHop};
+pub use hop_errors::DrawnErrors;
+pub(crate) use hop_errors::{Errors, HopErrors};
 pub(crate) use hop_trials::{HopTrials, JudgedHop, REPORTED_DRAWS, SEARCHED_DRAWS, Survival};
+pub use measured::MeasuredErrors;
 pub(crate) use rest_aim::resting_at;

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Command, Errors, HopDraws, Uncertainty};
+use super::{Command, Errors, HopErrors, Uncertainty};
 use crate::{
     ballistics::Arc,
     ground::{FirstContact, Windows},
@@ -39,7 +39,7 @@ pub(crate) fn resting_at<G: FirstContact + Windows>(
     let mut best: Option<(f64, Command<G::Contact>)> = None;
     let mut tried = command;
     for _ in 0..=CORRECTIONS {
-        let flown = without_errors.fly(ground, from, &tried.liftoff, &tried.aim, &HopDraws::default());
+        let flown = without_errors.fly(ground, from, &tried.liftoff, &tried.aim, &HopErrors::default());
         let (contact, rest) = (ground.point(&flown.end).xy(), ground.point(&flown.rest).xy());
         let miss = rest - wanted;
         if flown.failure.is_none() && best.as_ref().is_none_or(|(least_m, _)| miss.norm() < *least_m) {

@@ -4,7 +4,7 @@ use crate::{
     ballistics::TakeoffChoice,
     graph::{Effort, ReliabilityUse},
     hop::Split,
-    uncertainty::Policy,
+    uncertainty::{Distribution, Policy},
     world::{ClearanceRule, LandingMode, RESTITUTION_MAX, SpeedLevels},
 };
 
@@ -67,7 +67,10 @@ pub struct Key {
 impl Key {
     /// Whether its value is the path of a file.
     pub fn names_a_file(&self) -> bool {
-        matches!((self.table, self.name), ("terrain", "dem" | "mesh" | "chain") | ("surface", "friction_raster" | "keep_out"))
+        matches!(
+            (self.table, self.name),
+            ("terrain", "dem" | "mesh" | "chain") | ("surface", "friction_raster" | "keep_out") | ("uncertainty", "errors")
+        )
     }
 
     /// `table.name`.
@@ -140,10 +143,11 @@ const CHOICES: [&str; 4] =
     [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].name(), TakeoffChoice::ALL[2].name(), TakeoffChoice::ALL[3].name()];
 const RELIABILITY_USES: [&str; 3] = [ReliabilityUse::ALL[0].name(), ReliabilityUse::ALL[1].name(), ReliabilityUse::ALL[2].name()];
 const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
+const DISTRIBUTIONS: [&str; 2] = [Distribution::ALL[0].name(), Distribution::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 76] = [
+pub const CATALOGUE: [Key; 81] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -335,6 +339,37 @@ pub const CATALOGUE: [Key; 76] = [
     key("uncertainty", "friction_sigma", SHARE, "standard deviation of the friction coefficient, one draw per trial"),
     key("uncertainty", "height_sigma_m", FROM_ZERO, "standard deviation of the terrain's height, m, one random field per trial"),
     key("uncertainty", "height_correlation_m", FROM_ZERO, "correlation length of the height error, m"),
+    key(
+        "uncertainty",
+        "takeoff_speed_bias_sigma_fraction",
+        SHARE,
+        "standard deviation of an error of the take-off speed that lasts, as a fraction of the commanded one, one draw per trial",
+    ),
+    key(
+        "uncertainty",
+        "takeoff_angle_bias_sigma_deg",
+        SIGMA_ANGLE,
+        "standard deviation of an error of the take-off angle that lasts, degrees, one draw per trial",
+    ),
+    key(
+        "uncertainty",
+        "heading_bias_sigma_deg",
+        SIGMA_ANGLE,
+        "standard deviation of an error of the heading that lasts, degrees, one draw per trial; on a dem only",
+    ),
+    key(
+        "uncertainty",
+        "distribution",
+        Kind::Word(&DISTRIBUTIONS),
+        "of the errors of command, heading, position and drift, and of biases: normal, or uniform with the same deviation; friction and \
+         height are normal; absent: normal",
+    ),
+    key(
+        "uncertainty",
+        "errors",
+        Kind::Text,
+        "path of a CSV of measured errors, one hop a row, resampled in place of the deviations of the same errors",
+    ),
     key("uncertainty", "goal_tolerance_m", FROM_ZERO, "horizontal distance from the goal that counts as reached, m; absent: 0"),
     key(
         "uncertainty",
@@ -378,6 +413,7 @@ mod tests {
             "no_data",
             "risk_extra_hops_max",
             "takeoff_speed_sigma_fraction",
+            "takeoff_speed_bias_sigma_fraction",
             "friction_sigma",
             "hop_limit",
             "trials",

@@ -20,7 +20,8 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     tables.insert("contact".to_owned(), contact(scenario));
     tables.insert("terrain".to_owned(), terrain(scenario, named));
     tables.insert("search".to_owned(), search(scenario));
-    tables.insert("uncertainty".to_owned(), scenario.uncertainty.as_ref().map_or_else(|| json!({}), uncertainty));
+    tables
+        .insert("uncertainty".to_owned(), scenario.uncertainty.as_ref().map_or_else(|| json!({}), |keys| uncertainty(keys, named)));
     tables.insert("report".to_owned(), object([("title", scenario.title.clone().map(Value::from))]));
     tables.retain(|_, table| table.as_object().is_none_or(|keys| !keys.is_empty()));
     Value::Object(tables)
@@ -193,7 +194,7 @@ fn search(scenario: &Scenario) -> Value {
     ])
 }
 
-fn uncertainty(trials: &UncertaintyKeys) -> Value {
+fn uncertainty(trials: &UncertaintyKeys, named: &dyn Fn(&std::path::Path) -> String) -> Value {
     let errors = &trials.errors;
     object([
         ("takeoff_speed_sigma_m_s", Some(errors.takeoff_speed_sigma_m_s.into())),
@@ -206,6 +207,11 @@ fn uncertainty(trials: &UncertaintyKeys) -> Value {
         ("friction_sigma", Some(errors.friction_sigma.into())),
         ("height_sigma_m", Some(errors.height_sigma_m.into())),
         ("height_correlation_m", Some(errors.height_correlation_m.into())),
+        ("takeoff_speed_bias_sigma_fraction", Some(errors.takeoff_speed_bias_sigma_fraction.into())),
+        ("takeoff_angle_bias_sigma_deg", Some(errors.takeoff_angle_bias_sigma.written_degrees().into())),
+        ("heading_bias_sigma_deg", Some(errors.heading_bias_sigma.written_degrees().into())),
+        ("distribution", Some(errors.distribution.name().into())),
+        ("errors", trials.errors_file.as_deref().map(|path| named(path).into())),
         ("goal_tolerance_m", Some(trials.goal_tolerance_m.into())),
         ("hop_limit", trials.hop_limit.map(Value::from)),
         ("policy", Some(trials.policy.name().into())),

@@ -7,6 +7,7 @@ use std::{
 };
 
 use super::CATALOGUE;
+use crate::chain::csv::MEASURED_COLUMNS;
 use crate::terrain::{
     Foreign, ForeignGroup, VectorFormat, binary_stl_length, foreign_kind, mesh_format, raster_format, without_mark,
 };
@@ -33,6 +34,8 @@ pub enum FileKind {
     PairsCsv,
     /// Positions on a map.
     PositionsCsv,
+    /// Measured errors of hops.
+    MeasuredCsv,
     /// The hops of a path, as a plan writes them.
     PathCsv,
     /// A scenario.
@@ -131,6 +134,7 @@ impl FileKind {
             Self::ChainCsv => "a chain CSV".to_owned(),
             Self::PairsCsv => "a CSV of pairs of start and goal".to_owned(),
             Self::PositionsCsv => "a CSV of positions on a map".to_owned(),
+            Self::MeasuredCsv => "a CSV of measured errors of hops".to_owned(),
             Self::PathCsv => "a CSV of the hops of a path".to_owned(),
             Self::Scenario => "a scenario (TOML)".to_owned(),
             Self::Result => "a result (JSON)".to_owned(),
@@ -177,6 +181,7 @@ fn of_table(text: &str) -> Option<FileKind> {
         () if has("start_x_m") && has("goal_x_m") => Some(FileKind::PairsCsv),
         () if has("x_m") && has("z_m") && !is_map => Some(FileKind::ChainCsv),
         () if has("x_m") && has("y_m") && names.len() == 2 => Some(FileKind::PositionsCsv),
+        () if MEASURED_COLUMNS.iter().any(|column| has(column.name)) => Some(FileKind::MeasuredCsv),
         () => None,
     }
 }
@@ -266,7 +271,7 @@ mod tests {
             bytes.extend([0_u8; 50]);
             bytes
         };
-        let cases: [(&[u8], &str, FileKind, &str); 45] = [
+        let cases: [(&[u8], &str, FileKind, &str); 46] = [
             (b"", "a.tif", FileKind::Empty, "an empty file"),
             (b"II*\0rest", "a.csv", FileKind::Raster("GeoTIFF"), "a GeoTIFF"),
             (b"ncols 2\nnrows 2\n", "a.toml", FileKind::Raster("ESRI ASCII grid"), "an ESRI ASCII grid"),
@@ -284,6 +289,7 @@ mod tests {
             (b"\xef\xbb\xbf\"x_m\";\"z_m\"\n0;1\n", "a", FileKind::ChainCsv, "a chain CSV"),
             (b"start_x_m,goal_x_m\n0,1\n", "a", FileKind::PairsCsv, "a CSV of pairs of start and goal"),
             (b"x_m,y_m\n0,1\n", "a", FileKind::PositionsCsv, "a CSV of positions on a map"),
+            (b"run,drift_along_m\n0,1\n", "a", FileKind::MeasuredCsv, "a CSV of measured errors of hops"),
             (b"hop,direction,takeoff_x_m,takeoff_z_m,landing_x_m\n", "a", FileKind::PathCsv, "a CSV of the hops of a path"),
             (b"# mars\n[body]\nname = \"mars\"\n", "a.csv", FileKind::Scenario, "a scenario (TOML)"),
             (b"body.name = \"mars\"\n", "a", FileKind::Scenario, "a scenario (TOML)"),

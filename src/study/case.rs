@@ -5,7 +5,7 @@ use std::{
     sync::Arc,
 };
 
-use super::{CaseRecord, JourneyEnd, PipelineError, Prepared, Survey, prepare, scenario_files};
+use super::{CaseRecord, JourneyEnd, PipelineError, Prepared, Survey, prepare, scenario_files, with_measured_errors};
 use crate::{
     chain::Station,
     hop::HopTest,
@@ -37,7 +37,7 @@ impl Commands {
 /// A scenario over its terrain.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// The scenario as used.
+    /// The scenario as used, with its measured errors if it names any.
     pub scenario: Scenario,
     /// The folder that its paths start from.
     pub base: PathBuf,
@@ -88,9 +88,11 @@ impl Case {
         commands: Commands,
         prepare: &mut dyn FnMut(&Scenario, &TerrainSource) -> Result<Prepared, PipelineError>,
     ) -> Result<Self, CaseError> {
+        let (scenario, of_errors) = with_measured_errors(scenario, base)?;
         let terrain = scenario.terrain.as_ref().ok_or(CaseError::NoTerrain)?;
         let hopper = commands.hopper(&scenario.hopper);
-        let prepared = prepare(&Scenario { hopper, ..scenario.clone() }, terrain)?;
+        let mut prepared = prepare(&Scenario { hopper, ..scenario.clone() }, terrain)?;
+        prepared.warnings.extend(of_errors);
         Ok(Self { scenario, base: base.to_path_buf(), prepared, commands })
     }
 

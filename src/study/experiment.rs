@@ -15,6 +15,7 @@ use crate::{
     path::{Hop, PathError, generate},
     progress::Progress,
     report::{ConeWidthAnswer, RiskTradeAnswer, RiskTradeRow, SensitivityAnswer, TradedPath, WorstDriftAnswer},
+    scenario::UncertaintyKeys,
     uncertainty::{
         Policy,
         experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
@@ -147,8 +148,8 @@ pub fn experiment(
     let Some(path) = planned.path.as_ref().filter(|path| !path.hops.is_empty()) else {
         return Ok(Experimented { answer: None, warnings: Vec::new() });
     };
-    let keys = planned.case.scenario.uncertainty;
-    let seed = keys.unwrap_or_default().seed;
+    let keys = planned.case.scenario.uncertainty.as_ref();
+    let seed = keys.cloned().unwrap_or_default().seed;
     let mut warnings = Vec::new();
     let answer = match which {
         Experiment::WorstDrift => {
@@ -159,7 +160,7 @@ pub fn experiment(
         Experiment::ConeWidth => ExperimentAnswer::ConeWidth(cone_widths(planned, &path.hops, seed, progress)?),
         Experiment::RiskTrade => {
             let answer = ExperimentAnswer::RiskTrade(risk_trade(planned, progress)?);
-            warnings.extend(keys.and_then(|keys| keys.warning()).map(str::to_owned));
+            warnings.extend(keys.and_then(UncertaintyKeys::warning).map(str::to_owned));
             answer
         }
         Experiment::Sensitivity => {
@@ -216,7 +217,8 @@ fn mean_takeoff_width_deg(chain: &ConstrainedChain) -> f64 {
 fn risk_trade(planned: &Planned, progress: &dyn Progress) -> Result<RiskTradeAnswer, ExperimentError> {
     let Planned { case, test, ends: (start, goal), found, .. } = planned;
     let scenario = &case.scenario;
-    let keys = scenario.uncertainty.ok_or(ExperimentError::NoUncertainty { experiment: Experiment::RiskTrade })?;
+    let missing = ExperimentError::NoUncertainty { experiment: Experiment::RiskTrade };
+    let keys = scenario.uncertainty.as_ref().ok_or(missing)?;
     if keys.policy == Policy::Replan {
         return Err(ExperimentError::Replans);
     }

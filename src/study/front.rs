@@ -30,7 +30,7 @@ pub(super) struct FlownJourney<'a> {
 impl FlownJourney<'_> {
     /// The trials along a path; replanned by these costs, if there are any.
     pub(super) fn simulation(&self, path: &HopPath, to_go: Option<&Arc<CostToGo>>) -> Result<Simulation, SimulateError> {
-        self.simulation_under(path, to_go, self.scenario.uncertainty.unwrap_or_default().errors)
+        self.simulation_under(path, to_go, self.scenario.uncertainty.clone().unwrap_or_default().errors)
     }
 
     /// The same under other errors than those of the scenario.
@@ -101,7 +101,8 @@ impl FlownJourney<'_> {
         progress: &dyn Progress,
     ) -> Result<(), SimulateError> {
         let is_path = matches!(found.outcome, Outcome::Path { .. });
-        let Some((keys, fewest)) = self.scenario.uncertainty.filter(|_| is_path).zip(front.first().map(|path| path.cost.hops()))
+        let Some((keys, fewest)) =
+            self.scenario.uncertainty.as_ref().filter(|_| is_path).zip(front.first().map(|path| path.cost.hops()))
         else {
             return Ok(());
         };

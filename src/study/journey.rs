@@ -13,7 +13,7 @@ use crate::{
     progress::Progress,
     report::{CheckAnswer, SigmaMarginsRecord, SuccessEstimate},
     scenario::Scenario,
-    uncertainty::{HopScatter, Uncertainty},
+    uncertainty::HopScatter,
 };
 
 /// Bounds on the fewest hops are proved, for every choice of points.
@@ -114,7 +114,7 @@ impl Searched {
         progress: &dyn Progress,
     ) -> Result<Option<Estimate>, JourneyError> {
         let scenario = &case.scenario;
-        let Some(keys) = scenario.uncertainty.filter(|keys| keys.errors != Uncertainty::NONE) else { return Ok(None) };
+        let Some(keys) = scenario.uncertainty.as_ref().filter(|keys| !keys.errors.is_none()) else { return Ok(None) };
         let hops = self.found.hops();
         let known = self.reliable_paths.iter().find(|path| Some(path.cost.hops()) == hops).and_then(|path| path.success);
         let ground = dem_ground(case).map_err(Box::new)?;

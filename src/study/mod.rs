@@ -28,6 +28,7 @@ mod front;
 mod hop;
 mod journey;
 pub mod map;
+mod measured;
 mod on_body;
 mod physics;
 mod pipeline;
@@ -55,6 +56,7 @@ pub use experiment::{ConeProblem, ExperimentAnswer, ExperimentError, Experimente
 pub use footprint::coarse_dem_warning;
 pub use hop::{HopError, Hopped, hop};
 pub use journey::{JourneyError, Proof};
+pub use measured::with_measured_errors;
 pub use on_body::{OfBody, dem_on_body, on_body};
 pub use physics::{Extent, Extremes, TooLarge, constant_gravity_warnings};
 pub use pipeline::{DemReading, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, friction, prepare, sha256_of};

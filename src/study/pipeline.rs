@@ -28,6 +28,7 @@ use crate::{
         NoDataRule, OverlaidDem, OverlayEffect, Profile, Surroundings, TerrainError, check_scale, read_friction_raster,
         read_keep_out, read_mesh_with, slice_legs, slice_mesh,
     },
+    uncertainty::UncertaintyProblem,
     world::FrictionCone,
 };
 
@@ -120,6 +121,14 @@ pub enum PipelineError {
     /// A terrain that is larger than the body it is said to lie on.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
+    /// Measured errors that contradict the deviations beside them.
+    #[error("{}", measured_problems(path, problems))]
+    Measured {
+        /// The file of the measured errors.
+        path: PathBuf,
+        /// Every contradiction.
+        problems: Vec<UncertaintyProblem>,
+    },
     /// A file that cannot be read.
     #[error("{}: cannot be read ({source}): check the path and its permissions", path.display())]
     Read {
@@ -128,6 +137,13 @@ pub enum PipelineError {
         /// The reason.
         source: io::Error,
     },
+}
+
+/// A line for each problem.
+fn measured_problems(path: &Path, problems: &[UncertaintyProblem]) -> String {
+    let lines: Vec<String> =
+        problems.iter().map(|problem| format!("{}: uncertainty.{}: {}", path.display(), problem.found(), problem.help())).collect();
+    lines.join("\n")
 }
 
 /// Builds the chain of a scenario: slices its DEM or mesh, or reads its chain, resolves the constraints, finds start and goal on

@@ -39,7 +39,7 @@ impl CaseRecord {
     }
 }
 
-/// The files that are read for a scenario: its terrain and its overlays, each raster with the files beside it.
+/// The files that are read for a scenario: its terrain and its overlays, each raster with the files beside it, and its measured errors.
 ///
 /// `base` is the folder that the scenario's paths start from.
 pub fn scenario_files(scenario: &Scenario, base: &Path) -> Vec<PathBuf> {
@@ -49,6 +49,7 @@ pub fn scenario_files(scenario: &Scenario, base: &Path) -> Vec<PathBuf> {
         None => Vec::new(),
     };
     files.extend(Overlays::files(scenario).flat_map(|overlay| raster_files(&base.join(overlay))));
+    files.extend(scenario.uncertainty.as_ref().and_then(|keys| keys.errors_file.as_ref()).map(|path| base.join(path)));
     files
 }
 

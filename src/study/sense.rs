@@ -7,7 +7,7 @@ use crate::{
     path::{Hop, HopPath},
     quantity::format_number,
     scenario::{Scenario, TerrainSource},
-    uncertainty::{Policy, Uncertainty},
+    uncertainty::{MeasuredErrors, Policy, Uncertainty},
     world::FrictionCone,
 };
 
@@ -81,7 +81,7 @@ impl Scenario {
 
     /// A warning where commands in steps land farther from the goal than trials may.
     fn missed_goal(&self, path: &HopPath) -> Option<String> {
-        let tolerance_m = self.uncertainty?.goal_tolerance_m;
+        let tolerance_m = self.uncertainty.as_ref()?.goal_tolerance_m;
         let miss_m = path.hops.last()?.aim?.distance_m();
         (miss_m > tolerance_m).then(|| {
             format!(
@@ -125,13 +125,13 @@ impl Scenario {
 
     /// Warnings about trials under these policies: settings that they do not feel, deviations beyond sense, no errors at all.
     pub fn trial_warnings(&self, policies: &[Policy], ground: &TrialGround) -> Vec<String> {
-        let keys = self.uncertainty.unwrap_or_default();
+        let keys = self.uncertainty.clone().unwrap_or_default();
         let Uncertainty { position_sigma_m, friction_sigma, .. } = keys.errors;
         let mut warnings: Vec<String> = Vec::new();
         let felt = Uncertainty {
             position_sigma_m: if policies.contains(&Policy::Replan) { position_sigma_m } else { 0.0 },
             friction_sigma: if ground.friction_max.is_some() { friction_sigma } else { 0.0 },
-            ..keys.errors
+            ..keys.errors.clone()
         };
         if felt.position_sigma_m != position_sigma_m {
             warnings.push(format!(
@@ -147,7 +147,7 @@ impl Scenario {
                 format_number(friction_sigma)
             ));
         }
-        if felt == Uncertainty::NONE && keys.errors != Uncertainty::NONE {
+        if felt.is_none() && !keys.errors.is_none() {
             warnings.push(
                 "no error that is given has an effect on these trials, so that every trial flies the plan exactly and the rate has no meaning"
                     .to_owned(),
@@ -173,7 +173,7 @@ impl Scenario {
         const ANGLE_MAX_DEG: f64 = 45.0;
         /// The deviation of the slope error, height over correlation length: beyond 1 the map says nothing about slopes.
         const SLOPE_MAX: f64 = 1.0;
-        let keys = self.uncertainty.unwrap_or_default();
+        let keys = self.uncertainty.clone().unwrap_or_default();
         let errors = &keys.errors;
         let TrialGround { friction_max, extent_m, journey_m, .. } = *ground;
         let speed_max_m_s = self.hopper.limits().takeoff_speed_max_m_s;
@@ -194,6 +194,21 @@ impl Scenario {
                 format_number(keys.goal_tolerance_m),
                 format_number(journey_m)
             )
+        });
+        let measured = errors.measured.iter().flat_map(MeasuredErrors::greatest).filter_map(|(column, found)| {
+            let (most, what) = match column {
+                "takeoff_speed_error_fraction" => (1.0, "the whole commanded speed (0.02 is 2 %)"),
+                "takeoff_speed_error_m_s" => (speed_max_m_s, "the greatest take-off speed of the hopper"),
+                "takeoff_angle_error_deg" | "heading_error_deg" => (2.0 * ANGLE_MAX_DEG, "a flight across or back"),
+                _ => (extent_m, extent),
+            };
+            (found > most).then(|| {
+                format!(
+                    "uncertainty.errors has a {column} of {} in size, over {}, {what}: check its unit",
+                    format_number(found),
+                    format_number(most)
+                )
+            })
         });
         let slope = if errors.height_correlation_m > 0.0 { errors.height_sigma_m / errors.height_correlation_m } else { 0.0 };
         let steep = (slope > SLOPE_MAX).then(|| {
@@ -222,6 +237,15 @@ impl Scenario {
             ),
             over("takeoff_angle_sigma_deg", errors.takeoff_angle_sigma.degrees(), ANGLE_MAX_DEG, " deg", of_angle),
             over("heading_sigma_deg", errors.heading_sigma.degrees(), ANGLE_MAX_DEG, " deg", of_angle),
+            over(
+                "takeoff_speed_bias_sigma_fraction",
+                errors.takeoff_speed_bias_sigma_fraction,
+                FRACTION_MAX,
+                "",
+                "half the commanded speed (0.02 is 2 %)",
+            ),
+            over("takeoff_angle_bias_sigma_deg", errors.takeoff_angle_bias_sigma.degrees(), ANGLE_MAX_DEG, " deg", of_angle),
+            over("heading_bias_sigma_deg", errors.heading_bias_sigma.degrees(), ANGLE_MAX_DEG, " deg", of_angle),
             over("position_sigma_m", errors.position_sigma_m, extent_m, " m", extent),
             over("drift_along_sigma_m", errors.drift_along_sigma_m, extent_m, " m", extent),
             over("drift_across_sigma_m", errors.drift_across_sigma_m, extent_m, " m", extent),
@@ -238,6 +262,7 @@ impl Scenario {
         ]
         .into_iter()
         .flatten()
+        .chain(measured)
         .collect()
     }
 

@@ -29,7 +29,8 @@ pub(super) fn sensitivity(
     path: &HopPath,
     progress: &dyn Progress,
 ) -> Result<SensitivityAnswer, ExperimentError> {
-    let keys = planned.case.scenario.uncertainty.ok_or(ExperimentError::NoUncertainty { experiment: Experiment::Sensitivity })?;
+    let missing = ExperimentError::NoUncertainty { experiment: Experiment::Sensitivity };
+    let keys = planned.case.scenario.uncertainty.as_ref().ok_or(missing)?;
     let errors: Vec<ErrorKey> = ErrorKey::ALL.into_iter().filter(|key| keys.errors.has(*key)).collect();
     if errors.is_empty() {
         return Err(ExperimentError::NoErrors);
@@ -41,7 +42,7 @@ pub(super) fn sensitivity(
         flyer.simulation_under(path, errors)?.run(&options, &mut reached, progress).map_err(super::SimulateError::from)?;
         Ok(reached.0)
     };
-    let with = flown(keys.errors)?;
+    let with = flown(keys.errors.clone())?;
     let sigma = |key: ErrorKey| keys.errors.by_key().into_iter().find(|(name, ..)| *name == key.name()).map(|(_, sigma, _)| sigma);
     let row = |key: ErrorKey| Ok(SensitivityRow::new(key, sigma(key), &with, &flown(keys.errors.without(key))?));
     let mut errors: Vec<SensitivityRow> = errors.into_iter().map(row).collect::<Result<_, ExperimentError>>()?;

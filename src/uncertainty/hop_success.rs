@@ -6,7 +6,7 @@ use super::{
     trial::{Plan, PlannedHop},
 };
 use crate::{
-    flight::{HopTrials, JudgedHop, REPORTED_DRAWS},
+    flight::{Distribution, HopTrials, JudgedHop, REPORTED_DRAWS},
     ground::{FirstContact, Windows},
 };
 
@@ -27,7 +27,7 @@ impl Simulation {
     }
 
     fn successes<G: FirstContact + Windows>(&self, policy: Policy, ground: &G, plan: &Plan<G::Contact>, points: usize) -> Vec<f64> {
-        let trials = HopTrials::new(ground, &self.uncertainty, points, REPORTED_DRAWS);
+        let trials = HopTrials::new(ground, &self.uncertainty, Distribution::Normal, points, REPORTED_DRAWS);
         let success = |hop: &PlannedHop<G::Contact>| {
             let judged = JudgedHop {
                 from: hop.from,

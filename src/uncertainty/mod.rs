@@ -62,7 +62,7 @@ mod trial;
 mod wilson;
 
 pub use crate::{
-    flight::{DrawnErrors, ErrorKey, Uncertainty, UncertaintyProblem},
+    flight::{Distribution, DrawnErrors, ErrorKey, MeasuredErrors, Uncertainty, UncertaintyProblem},
     ground::LiftoffVelocity,
 };
 pub use mission::Mission;

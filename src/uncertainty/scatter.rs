@@ -6,7 +6,7 @@ use super::{
     trial::{Plan, PlannedHop},
 };
 use crate::{
-    flight::{Errors, TrialDraws},
+    flight::{Errors, HopErrors, TrialDraws},
     ground::FirstContact,
     quantity::Angle,
 };
@@ -59,7 +59,7 @@ impl Moments {
 impl Simulation {
     /// The scatter of every planned hop, by 512 fixed draws of its errors each.
     pub fn hop_scatters(&self) -> Vec<HopScatter> {
-        let errors = Errors::new(self.uncertainty, false);
+        let errors = Errors::new(self.uncertainty.clone(), false);
         match &self.ground_and_plan {
             GroundAndPlan::Chain(ground, plan) => scatters(ground, plan, &errors),
             GroundAndPlan::Map(ground, plan) => scatters(ground, plan, &errors),
@@ -75,9 +75,9 @@ fn scatters<G: FirstContact>(ground: &G, plan: &Plan<G::Contact>, errors: &Error
         if let Some(realization) = errors.realization(&mut draws, trial) {
             ground.realize(realization);
         }
-        draws.begin(trial);
+        let biases = errors.begin(&mut draws, trial);
         for (hop, moments) in plan.hops.iter().zip(&mut moments) {
-            fly(&ground, hop, errors, &mut draws, moments);
+            fly(&ground, hop, errors, &errors.draw(&mut draws, &biases), moments);
         }
     }
     let scatter = |[takeoff, landing, speed]: &[Moments; 3]| HopScatter {
@@ -93,12 +93,11 @@ fn fly<G: FirstContact>(
     ground: &G,
     hop: &PlannedHop<G::Contact>,
     errors: &Errors,
-    draws: &mut TrialDraws,
+    drawn: &HopErrors,
     [takeoff, landing, speed]: &mut [Moments; 3],
 ) {
-    let drawn = errors.draw(draws);
     let command = &hop.command;
-    let liftoff = errors.liftoff(&command.liftoff, command.speed_m_s, &drawn);
+    let liftoff = errors.liftoff(&command.liftoff, command.speed_m_s, drawn);
     if liftoff.stays() {
         return;
     }
@@ -106,7 +105,7 @@ fn fly<G: FirstContact>(
     let forward = liftoff.heading.dot(&command.liftoff.heading).signum();
     let planned_rad = libm::atan2(command.liftoff.vertical_m_s, command.liftoff.horizontal_m_s);
     takeoff.add(libm::atan2(liftoff.vertical_m_s, forward * liftoff.horizontal_m_s) - planned_rad);
-    let flown = errors.fly(ground, &ground.realized(hop.from), &liftoff, &command.aim, &drawn);
+    let flown = errors.fly(ground, &ground.realized(hop.from), &liftoff, &command.aim, drawn);
     if flown.landed {
         let touchdown = flown.touchdown;
         landing.add(libm::atan2(touchdown.vertical_m_s, forward * touchdown.horizontal_m_s));

@@ -235,7 +235,7 @@ impl Simulation {
         let meter = Meter::with_total(progress, Stage::Trials, options.trials);
         meter.report(Detail::None)?;
         let rules = Rules {
-            errors: Errors::new(self.uncertainty, options.policy == Policy::Replan),
+            errors: Errors::new(self.uncertainty.clone(), options.policy == Policy::Replan),
             policy: options.policy,
             hop_limit: self.hop_limit(options),
             goal_tolerance_m: options.goal_tolerance_m,

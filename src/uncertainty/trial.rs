@@ -5,7 +5,7 @@ use nalgebra::{Point2, Point3};
 use super::{DrawnErrors, HopRecord, Policy, TrialOutcome, TrialRecord, replan::Replan};
 use crate::{
     ballistics::{delta_v_of_m_s, propellant_kg},
-    flight::{Command, Errors, FlownHop, HopDraws, TrialDraws, resting_at},
+    flight::{Command, Errors, FlownHop, HopErrors, TrialDraws, resting_at},
     ground::{ContactFailure, FirstContact, LiftoffVelocity, Windows},
     world::HopperLimits,
 };
@@ -31,7 +31,7 @@ pub(super) struct PlannedHop<C> {
 }
 
 /// What is the same for all trials of a run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Rules {
     pub(super) errors: Errors,
     pub(super) policy: Policy,
@@ -99,10 +99,10 @@ pub(super) fn fly<G: FirstContact + Windows>(
         friction = realization.friction;
         ground.realize(realization);
     }
-    draws.begin(trial);
+    let biases = rules.errors.begin(draws, trial);
     let mut journey = Journey { nominal, ground, plan, rules, position: ground.realized(plan.start), hops: 0, used_kg: 0.0 };
     let outcome = loop {
-        let drawn = rules.errors.draw(draws);
+        let drawn = rules.errors.draw(draws, &biases);
         let command = match journey.decide(&drawn) {
             Ok(command) => command,
             Err(outcome) => break outcome,
@@ -124,7 +124,7 @@ pub(super) fn fly<G: FirstContact + Windows>(
         let ended = journey.land(&liftoff, &command.rest, hop, |landing, hop| {
             flown.landings.extend(landing);
             if keep_hops {
-                let drawn = rules.errors.drawn(command.speed_m_s, &drawn, friction);
+                let drawn = drawn.drawn(command.speed_m_s, friction);
                 flown.hops.push(HopRecord { trial, drawn, ..hop() });
             }
         });
@@ -156,12 +156,12 @@ struct Journey<'t, G: FirstContact> {
 
 impl<G: FirstContact + Windows> Journey<'_, G> {
     /// The next command, or the outcome of a journey that ends here.
-    fn decide(&self, drawn: &HopDraws) -> Result<Command<G::Contact>, TrialOutcome> {
+    fn decide(&self, drawn: &HopErrors) -> Result<Command<G::Contact>, TrialOutcome> {
         let planned = usize::try_from(self.hops).ok().and_then(|hop| self.plan.hops.get(hop));
         match self.rules.policy {
             Policy::OpenLoop => planned.map(|hop| hop.command).ok_or_else(|| self.arrived()),
             Policy::Replan => {
-                let [along_m, across_m] = self.rules.errors.position_m(drawn);
+                let [along_m, across_m] = drawn.position_m;
                 let believed = self.ground.believed(&self.position, along_m, across_m).ok_or(TrialOutcome::Stuck)?;
                 if self.is_at_goal(&believed) {
                     return Err(self.arrived());

@@ -45,7 +45,7 @@ fn a_thousand_trials_take_few_allocations_on_chain_and_map() {
     let [from, to] = [start, goal].map(|station| chain.contact_point(&station));
     let over_dem = Mission::over_dem(ground, path.clone(), from, to);
     for mission in [Mission::along_chain(test, path, start, goal), over_dem] {
-        let simulation = Simulation::new(&mission, errors).unwrap();
+        let simulation = Simulation::new(&mission, errors.clone()).unwrap();
         let trials = TrialOptions { trials: 1000, ..TrialOptions::default() };
         // The test harness has its own thread, so the round with the fewest allocations counts.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();

@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 75] = [
+const TELLING: [(&str, &str); 80] = [
     ("body.name", "earth"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -78,6 +78,11 @@ const TELLING: [(&str, &str); 75] = [
     ("uncertainty.friction_sigma", "0.4"),
     ("uncertainty.height_sigma_m", "1"),
     ("uncertainty.height_correlation_m", "7"),
+    ("uncertainty.takeoff_speed_bias_sigma_fraction", "0.2"),
+    ("uncertainty.takeoff_angle_bias_sigma_deg", "9"),
+    ("uncertainty.heading_bias_sigma_deg", "9"),
+    ("uncertainty.distribution", "uniform"),
+    ("uncertainty.errors", "none.csv"),
     ("uncertainty.goal_tolerance_m", "0.01"),
     ("uncertainty.hop_limit", "1"),
     ("uncertainty.policy", "replan"),

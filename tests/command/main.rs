@@ -24,6 +24,7 @@ mod interrupt;
 mod map_command;
 mod map_starts;
 mod maps_command;
+mod measured_errors;
 mod mesh_command;
 mod missing_data;
 mod picture_files;

@@ -103,7 +103,7 @@ const MAPS: &[&str] = &["ground.tif", "ground.asc", "ground.xyz", "label.lbl", "
 const TERRAINS: &[&str] = &["ground.tif", "ground.asc", "ground.xyz", "label.lbl", "plate.obj", "plate.ply", "plate.stl"];
 
 /// A key of a scenario that names a file, its lines with `THING` in them, and the things that it takes.
-const KEYS: [(&str, &str, &[&str]); 5] = [
+const KEYS: [(&str, &str, &[&str]); 6] = [
     ("terrain.dem", "[terrain]\ndem = \"THING\"\n", RASTERS),
     ("terrain.mesh", "[terrain]\nmesh = \"THING\"\n", &["plate.obj", "plate.ply", "plate.stl"]),
     ("terrain.chain", "[terrain]\nchain = \"THING\"\n", &["chain.csv", "empty.tif"]),
@@ -113,6 +113,7 @@ const KEYS: [(&str, &str, &[&str]); 5] = [
         &["ground.tif", "ground.asc", "ground.xyz", "label.lbl", "zones.geojson", "zones.kml", "zones.shp", "zones.gpkg"],
     ),
     ("surface.friction_raster", "[terrain]\ndem = \"ground.tif\"\n[surface]\nfriction_raster = \"THING\"\n", RASTERS),
+    ("uncertainty.errors", "[terrain]\ndem = \"ground.tif\"\n[uncertainty]\nerrors = \"THING\"\n", &["empty.tif"]),
 ];
 
 /// Checks the sentence for a thing in a position.

@@ -7,7 +7,7 @@
 use std::{collections::BTreeMap, fmt::Write, path::Path};
 
 use chta::{
-    chain::csv::{CHAIN_COLUMNS, PAIRS_COLUMNS},
+    chain::csv::{CHAIN_COLUMNS, MEASURED_COLUMNS, PAIRS_COLUMNS},
     quantity::unit_of,
     report::{
         CompareAnswer, FanAnswer, HopRecord, MapKnowledge, TradeAnswer,
@@ -313,8 +313,11 @@ fn document() -> String {
             writeln!(text, "| `{column}` | {} | {} |", unit_of(&column), cell(&meaning(&records, place, &column, &of))).unwrap();
         }
     }
-    for (title, columns) in [("Chains (read and written)", &CHAIN_COLUMNS[..]), ("Pairs of start and goal (read)", &PAIRS_COLUMNS)]
-    {
+    for (title, columns) in [
+        ("Chains (read and written)", &CHAIN_COLUMNS[..]),
+        ("Pairs of start and goal (read)", &PAIRS_COLUMNS),
+        ("Measured errors (read)", &MEASURED_COLUMNS),
+    ] {
         writeln!(text, "\n### {title}\n\n| column | unit | meaning |\n|---|---|---|").unwrap();
         for column in columns {
             writeln!(text, "| `{}` | {} | {} |", column.name, unit_of(column.name), cell(column.help)).unwrap();

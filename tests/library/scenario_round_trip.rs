@@ -88,7 +88,7 @@ fn toml() -> impl Strategy<Value = String> {
             ("surface", "takeoff_from_slope_deg" | "landing_from_slope_deg") => !friction,
             // Both or neither; a heading error only on a raster.
             ("uncertainty", "height_sigma_m" | "height_correlation_m") => degrees,
-            ("uncertainty", "heading_sigma_deg") => ground < 2,
+            ("uncertainty", "heading_sigma_deg" | "heading_bias_sigma_deg") => ground < 2,
             ("search", "risk_extra_hops_max") => false,
             ("search", "points_per_segment") | ("hopper", "roughness_max_m" | "takeoff_speed_max_m_s") => points,
             ("search", "node_spacing_max_m") => !points,

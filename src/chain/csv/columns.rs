@@ -24,6 +24,10 @@ enum Kind {
     Friction,
     /// A speed limit, at least 0.
     Speed,
+    /// An error of speed, of either sign.
+    SpeedError,
+    /// A share, of either sign.
+    Share,
     /// An angle in degrees between two bounds.
     Degrees { least: f64, greatest: f64 },
     /// 0 or 1.
@@ -44,6 +48,10 @@ const fn optional(name: &'static str, kind: Kind, help: &'static str) -> CsvColu
 
 const fn angle(name: &'static str, help: &'static str) -> CsvColumn {
     optional(name, Kind::Degrees { least: -ANGLE_MAX_DEG, greatest: ANGLE_MAX_DEG }, help)
+}
+
+const fn error_angle(name: &'static str, help: &'static str) -> CsvColumn {
+    optional(name, Kind::Degrees { least: -180.0, greatest: 180.0 }, help)
 }
 
 pub(super) const X: usize = 0;
@@ -104,6 +112,19 @@ pub const PAIRS_COLUMNS: [CsvColumn; 2] = [
 pub const POSITION_COLUMNS: [CsvColumn; 2] =
     [required("x_m", "easting on the map (required)"), required("y_m", "northing on the map (required)")];
 
+pub(super) const SPEED_ERROR_FRACTION: usize = 0;
+pub(super) const SPEED_ERROR: usize = 1;
+
+/// All columns of a CSV of measured errors, one hop a row.
+pub const MEASURED_COLUMNS: [CsvColumn; 6] = [
+    optional("takeoff_speed_error_fraction", Kind::Share, "flown take-off speed over the commanded one, less 1"),
+    optional("takeoff_speed_error_m_s", Kind::SpeedError, "instead: flown take-off speed less the commanded one"),
+    error_angle("takeoff_angle_error_deg", "flown take-off elevation less the commanded one"),
+    error_angle("heading_error_deg", "flown heading less the commanded one, clockwise; on a DEM only"),
+    optional("drift_along_m", Kind::Finite, "bounce and roll after the landing, along the direction of flight"),
+    optional("drift_across_m", Kind::Finite, "the same to the left"),
+];
+
 /// The value that a field should have, and how to correct the file.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Fault {
@@ -120,7 +141,7 @@ impl CsvColumn {
             return Err(fault(self.help_for_infinite(text)));
         }
         match self.kind {
-            Kind::Finite => Ok(number),
+            Kind::Finite | Kind::SpeedError | Kind::Share => Ok(number),
             Kind::Friction | Kind::Speed if number >= 0.0 => Ok(number),
             Kind::Friction => Err(fault("dry rock and regolith have 0.3 to 1.2".to_owned())),
             Kind::Speed => Err(fault("speeds are given without sign: write the magnitude, or 0 for not allowed".to_owned())),
@@ -131,12 +152,25 @@ impl CsvColumn {
         }
     }
 
+    /// What it measures; `None` of a flag.
+    const fn measure(&self) -> Option<Measure> {
+        match self.kind {
+            Kind::Finite => Some(Measure::Length),
+            Kind::Friction | Kind::Share => Some(Measure::Ratio),
+            Kind::Speed | Kind::SpeedError => Some(Measure::Speed),
+            Kind::Degrees { .. } => Some(Measure::Angle),
+            Kind::Flag => None,
+        }
+    }
+
     /// A phrase that describes the accepted values.
     pub(super) fn expected(&self) -> &'static str {
         match self.kind {
-            Kind::Finite => "a finite number",
+            Kind::Finite | Kind::Share => "a finite number",
+            Kind::SpeedError => "a finite speed, m/s",
             Kind::Friction => "a finite number of at least 0",
             Kind::Speed => "a finite speed of at least 0 m/s",
+            Kind::Degrees { least, .. } if least == -180.0 => "a finite angle from -180 to 180 degrees",
             Kind::Degrees { least, .. } if least < 0.0 => "a finite angle from -270 to 270 degrees",
             Kind::Degrees { .. } => "a finite angle from 0 to 90 degrees",
             Kind::Flag => "0 or 1",
@@ -151,7 +185,7 @@ impl CsvColumn {
             Kind::Speed => {
                 "if the speed has no limit, write one that is never reached: the smaller of chain and [hopper] applies".to_owned()
             }
-            Kind::Degrees { least, .. } if least < 0.0 => "if the angle has no limit, write -90 or 90".to_owned(),
+            Kind::Degrees { least, .. } if least < -180.0 => "if the angle has no limit, write -90 or 90".to_owned(),
             _ => "write a number, or remove the row".to_owned(),
         }
     }
@@ -176,18 +210,15 @@ pub(super) struct OtherUnit {
 pub(super) fn in_other_unit(columns: &[CsvColumn], name: &str) -> Option<OtherUnit> {
     let (base, text) = split_unit(name);
     let text = text?;
-    let column = columns.iter().find(|column| {
-        let known = split_unit(column.name).0;
+    let is_meant = |column: &&CsvColumn| {
+        let known = split_unit(column.name.trim_end_matches("_fraction")).0;
         known == base || (known == "friction_coefficient" && matches!(base.as_str(), "friction" | "mu"))
-    })?;
-    let expected = match column.kind {
-        Kind::Finite => Measure::Length,
-        Kind::Friction => Measure::Ratio,
-        Kind::Speed => Measure::Speed,
-        Kind::Degrees { .. } => Measure::Angle,
-        Kind::Flag => return None,
     };
     let unit = unit_named(&text);
+    // A quantity may be known in several units.
+    let in_this = columns.iter().filter(is_meant).find(|column| unit.is_some_and(|unit| column.measure() == Some(unit.measure)));
+    let column = in_this.or_else(|| columns.iter().find(is_meant))?;
+    let expected = column.measure()?;
     if unit.is_some_and(|unit| unit.measure == expected && unit.is_ours()) {
         return None;
     }
@@ -243,6 +274,8 @@ mod tests {
         for (index, name) in named {
             assert_eq!(CHAIN_COLUMNS[index].name, name);
         }
+        assert_eq!(MEASURED_COLUMNS[SPEED_ERROR_FRACTION].name, "takeoff_speed_error_fraction");
+        assert_eq!(MEASURED_COLUMNS[SPEED_ERROR].name, "takeoff_speed_error_m_s");
         for i in 0..SIX {
             assert_eq!(CHAIN_COLUMNS[REVERSE + i].name, format!("reverse_{}", CHAIN_COLUMNS[FORWARD + i].name));
         }

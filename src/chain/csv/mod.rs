@@ -19,6 +19,7 @@
 
 mod columns;
 mod degrees;
+mod measured;
 mod pairs;
 mod positions;
 mod problem;
@@ -28,7 +29,8 @@ mod table;
 mod voids;
 mod write;
 
-pub use columns::{CHAIN_COLUMNS, CsvColumn, PAIRS_COLUMNS, POSITION_COLUMNS};
+pub use columns::{CHAIN_COLUMNS, CsvColumn, MEASURED_COLUMNS, PAIRS_COLUMNS, POSITION_COLUMNS};
+pub use measured::{MeasuredFile, read_measured_csv, read_measured_csv_file};
 pub use pairs::{PairsFile, StartGoal, read_pairs_csv, read_pairs_csv_file};
 pub use positions::{PositionsFile, read_positions_csv, read_positions_csv_file};
 pub use problem::{CsvFileError, CsvProblem, CsvProblems};

@@ -163,6 +163,10 @@ fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends
                 output::warn(common.quiet, &warning);
             }
         }
+        // The measured errors of a scenario beside the chain lie where that scenario does.
+        for (key, path) in source.entries.files().into_iter().filter(|(key, path)| key.table == "uncertainty" && path != "-") {
+            source.entries.redirect(key, &source.base.join(path).to_string_lossy());
+        }
         source.entries.set_by_option("CHAIN", "terrain", "chain", input.file.to_string_lossy().into_owned().into());
         // A path on the command line is relative to the working folder.
         source.base = PathBuf::new();

@@ -8,7 +8,7 @@ use crate::{
     ballistics::level_bounces,
     chain::{ConstrainedChain, PolygonalChain},
     draw::Draw,
-    flight::{Command, Errors, FlownHop, HopDraws, HopTrials, JudgedHop, TrialDraws, Uncertainty},
+    flight::{Command, Distribution, Errors, FlownHop, HopErrors, HopTrials, JudgedHop, SEARCHED_DRAWS, TrialDraws, Uncertainty},
     ground::{ChainGround, ChainPosition, ContactFailure, DemGround, FirstContact, LiftoffVelocity, MapPosition},
     hop::HopTest,
     quantity::{Angle, ChainPoint, MapPoint},
@@ -49,7 +49,7 @@ fn station(ground: &ChainGround, x_m: f64) -> ChainPosition {
 fn flown<G: FirstContact>(ground: &G, from: &G::Contact, velocity: Vector3<f64>) -> FlownHop<G::Contact> {
     let horizontal_m_s = velocity.xy().norm();
     let liftoff = LiftoffVelocity { heading: velocity.xy() / horizontal_m_s, horizontal_m_s, vertical_m_s: velocity.z };
-    Errors::new(Uncertainty::NONE, false).fly(ground, from, &liftoff, from, &HopDraws::default())
+    Errors::new(Uncertainty::NONE, false).fly(ground, from, &liftoff, from, &HopErrors::default())
 }
 
 fn random_restitution(draw: &mut Draw, speed_m_s: f64) -> Restitution {
@@ -252,14 +252,15 @@ fn estimates_count_what_flights_do() {
         let command = Command::new(liftoff, aim);
         let goal = Some((Point2::new(goal_m, 0.0), tolerance_m));
         let judged = JudgedHop { from, command, takeoff_sigma_m: [0.0; 2], goal, aims_at_rest: false };
-        let survival = HopTrials::new(&ground, &errors, points.len()).survival(&judged, u32::MAX);
+        let survival =
+            HopTrials::new(&ground, &errors, Distribution::Normal, points.len(), SEARCHED_DRAWS).survival(&judged, u32::MAX);
         let estimate = 1.0 - f64::from(survival.failed) / f64::from(survival.of);
-        let random = Errors::new(errors, false);
+        let random = Errors::new(errors.clone(), false);
         let mut draws = TrialDraws::seeded(3);
         let mut arrived = 0;
         for trial in 0..20_000 {
-            draws.begin(trial);
-            let drawn = random.draw(&mut draws);
+            let biases = random.begin(&mut draws, trial);
+            let drawn = random.draw(&mut draws, &biases);
             let liftoff = random.liftoff(&command.liftoff, command.speed_m_s, &drawn);
             if !ground.holds_takeoff(&from, &liftoff) {
                 continue;

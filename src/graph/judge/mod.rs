@@ -6,7 +6,7 @@ use super::{Edge, HopGraph, SearchOptions};
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice, loft_at_share},
     chain::Station,
-    flight::{Command, HopTrials, JudgedHop, SEARCHED_DRAWS, Survival, Uncertainty, UncertaintyProblem},
+    flight::{Command, Distribution, HopTrials, JudgedHop, SEARCHED_DRAWS, Survival, Uncertainty, UncertaintyProblem},
     ground::{ChainGround, ChainPosition, DemGround, MapPosition, Surface, heading_of},
     hop::{HopTest, SegmentHops, Split},
     quantity::{Angle, NodeId, SlopeInterval, normal_cdf},
@@ -61,7 +61,7 @@ impl RiskModel {
 
     /// Whether every hop has the same probability to fail: errors that are all 0.
     pub fn distinguishes_no_hops(&self) -> bool {
-        matches!(self, Self::Flown { errors, .. } if *errors == Uncertainty::NONE)
+        matches!(self, Self::Flown { errors, .. } if errors.is_none())
     }
 }
 
@@ -117,15 +117,22 @@ impl Judge {
         let (trials, takeoffs, position_sigma_m) = match model {
             RiskModel::Slack => (Trials::Slack, TakeoffScatter::OfPosition, 0.0),
             RiskModel::Flown { errors, takeoffs, over } => {
+                let of_takeoffs = match takeoffs {
+                    TakeoffScatter::OfPosition => errors.distribution,
+                    // The sum of the errors of many landings is nearly Gaussian.
+                    TakeoffScatter::OfLandings => Distribution::Normal,
+                };
                 let trials = match over {
                     None => {
                         // Along a chain there is one plane of travel.
-                        let errors = Uncertainty { heading_sigma: Angle::from_radians(0.0), ..*errors };
+                        let errors = errors.in_one_plane();
                         let ground = ChainGround::new(test.clone());
-                        Trials::Chain(HopTrials::new(&ground, &errors, test.chain().geometry().vertices().len(), SEARCHED_DRAWS))
+                        let vertices = test.chain().geometry().vertices().len();
+                        Trials::Chain(HopTrials::new(&ground, &errors, of_takeoffs, vertices, SEARCHED_DRAWS))
                     }
                     Some(ground) => {
-                        Trials::Map(Box::new((HopTrials::new(ground.as_ref(), errors, 1, SEARCHED_DRAWS), (**ground).clone())))
+                        let trials = HopTrials::new(ground.as_ref(), errors, of_takeoffs, 1, SEARCHED_DRAWS);
+                        Trials::Map(Box::new((trials, (**ground).clone())))
                     }
                 };
                 (trials, *takeoffs, errors.position_sigma_m)

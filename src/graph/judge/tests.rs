@@ -6,7 +6,8 @@ use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 use super::*;
 use crate::{
-    chain::{ConstrainedChain, PolygonalChain},
+    chain::{ConstrainedChain, PolygonalChain, csv::read_measured_csv},
+    flight::{ErrorKey, MeasuredErrors},
     quantity::ChainPoint,
     world::{Contact, FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
@@ -54,7 +55,7 @@ struct Case<'a> {
 impl Case<'_> {
     fn judge(&self) -> Judge {
         let options = SearchOptions { takeoff: self.choice, ..SearchOptions::default() };
-        let model = RiskModel::Flown { errors: self.errors, takeoffs: TakeoffScatter::OfPosition, over: None };
+        let model = RiskModel::Flown { errors: self.errors.clone(), takeoffs: TakeoffScatter::OfPosition, over: None };
         Judge::new(self.test, &options, &model, self.tolerance_m)
     }
 
@@ -79,19 +80,32 @@ impl Case<'_> {
     /// Counts hops towards +x that fail, flown by numerical integration of Newton's equations, without slopes or closed forms.
     fn counted(&self, from_m: f64, to_m: f64, flights: u32) -> f64 {
         let planned = self.planned(from_m, to_m).unwrap();
-        let (test, errors) = (self.test, self.errors);
+        let (test, errors) = (self.test, &self.errors);
         let arc = Arc::new(planned.sight, test.loft(self.choice, planned.sight, planned.lofts), G);
         let mut source = ChaCha8Rng::seed_from_u64(5);
-        let mut normal = || {
+        let normal = |source: &mut ChaCha8Rng| {
             let radius = libm::sqrt(-2.0 * libm::log(1.0 - source.random::<f64>()));
             radius * libm::cos(std::f64::consts::TAU * source.random::<f64>())
         };
+        let standard = |source: &mut ChaCha8Rng| match errors.distribution {
+            Distribution::Normal => normal(source),
+            Distribution::Uniform => 12.0_f64.sqrt() * (source.random::<f64>() - 0.5),
+        };
         let geometry = test.chain().geometry();
         let failed = (0..flights).filter(|_| {
-            let speed = arc.takeoff_speed_m_s() * (1.0 + errors.takeoff_speed_sigma_fraction * normal());
-            let angle = arc.takeoff_angle().radians() + errors.takeoff_angle_sigma.radians() * normal();
+            let mut fraction = errors.takeoff_speed_sigma_fraction * standard(&mut source);
+            let mut turned = errors.takeoff_angle_sigma.radians() * standard(&mut source);
+            let along_m = errors.position_sigma_m * standard(&mut source);
+            if errors.has(ErrorKey::TakeoffSpeedBias) || errors.has(ErrorKey::TakeoffAngleBias) {
+                fraction += errors.takeoff_speed_bias_sigma_fraction * standard(&mut source);
+                turned += errors.takeoff_angle_bias_sigma.radians() * standard(&mut source);
+            }
+            let row = errors.measured.as_ref().map(|measured| measured.row(source.random()));
+            let (of_row, turned_of_row) = row.map_or((0.0, 0.0), |row| (row.speed_fraction, row.angle_rad));
+            let speed = arc.takeoff_speed_m_s() * (1.0 + fraction + of_row);
+            let angle = arc.takeoff_angle().radians() + turned + turned_of_row;
             let (first_m, last_m) = geometry.extent_m();
-            let from_m = (planned.takeoff.point.x_m + errors.position_sigma_m * normal()).clamp(first_m, last_m);
+            let from_m = (planned.takeoff.point.x_m + along_m).clamp(first_m, last_m);
             let from = geometry.station(from_m).unwrap();
             let within = |station: &Station, contact, angle: f64, speed: f64| {
                 test.chain().check_contact(station, contact, Direction::Forward).is_ok_and(|rule| {
@@ -127,16 +141,14 @@ const ROUGH: [(f64, f64); 8] =
 const FLAT: [(f64, f64); 2] = [(0.0, 0.0), (40.0, 0.0)];
 const HOPS: [(f64, f64); 5] = [(3.0, 11.0), (5.0, 15.5), (12.0, 20.0), (2.0, 8.0), (20.0, 30.0)];
 
-#[test]
-fn the_estimate_agrees_with_counted_flights() {
-    let pushed =
-        Uncertainty { takeoff_speed_sigma_fraction: 0.05, takeoff_angle_sigma: Angle::from_degrees(4.0), ..Uncertainty::NONE };
+/// The differences of estimate and count over all hops, grounds, commands and tolerances.
+fn differences(all_errors: &[Uncertainty]) -> Vec<f64> {
     let mut differences = Vec::new();
     for (points, friction, landing_max) in [(&ROUGH[..], 0.9, 10.0), (&ROUGH[..], 0.7, 7.5), (&FLAT[..], 0.8, 8.0)] {
         let test = test_over(points, friction, landing_max, PLAIN);
-        for errors in [scatter(), pushed] {
+        for errors in all_errors {
             for (choice, tolerance_m) in [(TakeoffChoice::MidRange, None), (TakeoffChoice::LeastSpeed, Some(0.8))] {
-                let case = Case { test: &test, errors, choice, tolerance_m };
+                let case = Case { test: &test, errors: errors.clone(), choice, tolerance_m };
                 for (from_m, to_m) in HOPS {
                     let Some(estimate) = case.failing(from_m, to_m) else { continue };
                     differences.push(estimate - case.counted(from_m, to_m, 1600));
@@ -144,11 +156,79 @@ fn the_estimate_agrees_with_counted_flights() {
             }
         }
     }
+    differences
+}
+
+/// The greatest difference by size, and the mean of the sizes.
+fn worst_and_mean(differences: &[f64]) -> (f64, f64) {
     let worst = differences.iter().fold(0.0_f64, |worst, difference| worst.max(difference.abs()));
     #[expect(clippy::cast_precision_loss, reason = "some dozens")]
     let mean = differences.iter().map(|difference| difference.abs()).sum::<f64>() / differences.len() as f64;
+    (worst, mean)
+}
+
+#[test]
+fn the_estimate_agrees_with_counted_flights() {
+    let pushed =
+        Uncertainty { takeoff_speed_sigma_fraction: 0.05, takeoff_angle_sigma: Angle::from_degrees(4.0), ..Uncertainty::NONE };
+    let differences = differences(&[scatter(), pushed]);
+    let (worst, mean) = worst_and_mean(&differences);
     // 1600 flights have a standard error of at most 0.0125, 64 fixed draws an error of some 0.02.
     assert!(differences.len() > 20 && worst < 0.07 && mean < 0.018, "{worst} {mean} of {}", differences.len());
+}
+
+/// Rows that a test stand might have: what is too fast is also too steep.
+fn measured(rows: u32) -> Uncertainty {
+    let mut source = ChaCha8Rng::seed_from_u64(9);
+    let mut text = "takeoff_angle_error_deg,takeoff_speed_error_fraction\n".to_owned();
+    for _ in 0..rows {
+        let common: f64 = source.random::<f64>() - 0.4;
+        let own: f64 = source.random::<f64>() - 0.5;
+        text += &format!("{},{}\n", 5.0 * common + own, 0.07 * common);
+    }
+    let file = read_measured_csv(text.as_bytes()).unwrap();
+    Uncertainty { measured: Some(MeasuredErrors::of(&file)), ..Uncertainty::NONE }
+}
+
+#[test]
+fn the_estimate_of_biases_uniform_and_measured_errors_agrees_with_counted_flights() {
+    let uniform = Uncertainty { distribution: Distribution::Uniform, ..scatter() };
+    let biased = Uncertainty {
+        takeoff_speed_bias_sigma_fraction: 0.02,
+        takeoff_angle_bias_sigma: Angle::from_degrees(1.5),
+        position_sigma_m: 0.3,
+        ..Uncertainty::NONE
+    };
+    let both = Uncertainty { takeoff_speed_sigma_fraction: 0.03, distribution: Distribution::Uniform, ..biased.clone() };
+    // Rows are one number of a draw, along which 64 draws are spread evenly: speed is, and what the rows have beside it is less.
+    for (what, errors, mean_most) in [
+        ("uniform", uniform, 0.02),
+        ("biased", biased, 0.02),
+        ("both", both, 0.02),
+        ("12 measured hops", measured(12), 0.03),
+        ("500 measured hops", measured(500), 0.03),
+    ] {
+        let differences = differences(&[errors]);
+        let (worst, mean) = worst_and_mean(&differences);
+        assert!(differences.len() > 10 && worst < 0.08 && mean < mean_most, "{what}: {worst} {mean} of {}", differences.len());
+    }
+}
+
+#[test]
+fn a_bias_alone_fails_a_hop_as_an_error_of_its_own_of_the_same_size() {
+    let test = test_over(&[(0.0, 0.0), (60.0, 0.0)], 50.0, 20.0, PLAIN);
+    let biased = Uncertainty { takeoff_speed_bias_sigma_fraction: 0.01, ..Uncertainty::NONE };
+    let case = Case { test: &test, errors: biased, choice: TakeoffChoice::LeastSpeed, tolerance_m: Some(2.0 * 20.0 * 0.01) };
+    // As for independent errors: 68.27 % are within one standard deviation of the landing.
+    let failed = case.failing(10.0, 30.0).unwrap();
+    assert!((failed - 0.317_310_507_863).abs() < 0.5 / 64.0 + 0.01, "{failed}");
+    // Uniform: 1 - 1/sqrt(3) are beyond one standard deviation, and none beyond sqrt(3) of them.
+    let uniform = Uncertainty { distribution: Distribution::Uniform, ..case.errors.clone() };
+    for (sigmas, share) in [(1.0, 1.0 - 1.0 / 3.0_f64.sqrt()), (1.76, 0.0)] {
+        let case = Case { errors: uniform.clone(), tolerance_m: Some(sigmas * 2.0 * 20.0 * 0.01), ..case };
+        let failed = case.failing(10.0, 30.0).unwrap();
+        assert!((failed - share).abs() < 0.5 / 64.0 + 0.01, "{sigmas}: {failed}");
+    }
 }
 
 #[test]

@@ -53,7 +53,8 @@ impl PreparedMap {
     /// # Errors
     /// [`MapStudyError`].
     pub fn answered(&self, question: &MapQuestion<'_>, progress: &dyn Progress) -> Result<MapStudy, MapStudyError> {
-        let keys = question.trial_keys()?;
+        let flown = question.flown_scenario()?;
+        let keys = flown.as_ref().map(|(scenario, _)| scenario.uncertainty.clone().unwrap_or_default());
         // Run inside the rayon pool: work started by a pool thread is picked up faster than work submitted from outside.
         let found = rayon::scope(|_| self.found(question, progress))?;
         let Found { out, back, mobility, predecessors, goal_hops, paths, warnings: of_ends } = found;
@@ -76,7 +77,8 @@ impl PreparedMap {
         answer.goals =
             goals.map(|((goal, path), trials)| self.goal_record(goal, (&out, back.as_ref()), path.as_ref(), trials)).collect();
         let mut warnings = self.warnings.clone();
-        if keys.is_some() {
+        if let Some((scenario, of_errors)) = &flown {
+            warnings.extend(of_errors.iter().cloned());
             warnings.extend(scenario.trial_warnings(&[Policy::OpenLoop], &self.trial_ground(&paths)));
         }
         warnings.extend(of_ends);
@@ -163,7 +165,7 @@ impl PreparedMap {
         let fly = |path: &HopPath| {
             let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
             let mission = Mission::over_dem(self.ground.clone(), path.clone(), first.takeoff, last.landing);
-            let summary = Simulation::new(&mission, keys.errors)?.run(&keys.options(), &mut (), progress)?;
+            let summary = Simulation::new(&mission, keys.errors.clone())?.run(&keys.options(), &mut (), progress)?;
             Ok(Some(SimulationRecord::new(&summary, path.hops.len())))
         };
         paths.iter().map(|path| path.as_ref().map_or(Ok(None), fly)).collect()

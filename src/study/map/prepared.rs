@@ -5,8 +5,8 @@ use crate::{
     ground::DemGround,
     quantity::MapPoint,
     reach::map::{NodeLattice, Post},
-    scenario::UncertaintyKeys,
-    study::{DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body},
+    scenario::Scenario,
+    study::{DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body, with_measured_errors},
     terrain::{Dem, GeoReference, MapProjection, NoProjection, check_map_scale},
     uncertainty::Policy,
 };
@@ -99,16 +99,18 @@ impl PreparedMap {
 }
 
 impl MapQuestion<'_> {
-    /// The errors and options of the trials, `None` if none are asked for.
+    /// The scenario whose trials are flown, with its measured errors, and warnings about these; `None` if none are asked for.
     ///
     /// # Errors
-    /// [`MapStudyError::Replanning`].
-    pub fn trial_keys(&self) -> Result<Option<UncertaintyKeys>, MapStudyError> {
-        let keys = self.scenario.uncertainty.unwrap_or_default();
-        if self.trials && keys.policy == Policy::Replan {
+    /// [`MapStudyError::Replanning`], and what is wrong with the measured errors.
+    pub fn flown_scenario(&self) -> Result<Option<(Scenario, Vec<String>)>, MapStudyError> {
+        if !self.trials {
+            return Ok(None);
+        }
+        if self.scenario.uncertainty.as_ref().is_some_and(|keys| keys.policy == Policy::Replan) {
             return Err(MapStudyError::Replanning);
         }
-        Ok(self.trials.then_some(keys))
+        Ok(Some(with_measured_errors(self.scenario.clone(), self.base)?))
     }
 }
 

@@ -89,7 +89,7 @@ impl Advisor<'_> {
 
     /// The error of the take-off that scatters landings most, on flat ground: the range is `v^2 sin(2 theta) / g`.
     fn error(&self) -> Option<AdviceRecord> {
-        let errors = self.planned.case.scenario.uncertainty?.errors;
+        let errors = self.planned.case.scenario.uncertainty.as_ref()?.errors.clone();
         let last = self.hops().last()?;
         let (range_m, speed_m_s, twice_rad) = (last.run_m(), last.takeoff_speed_m_s, 2.0 * last.takeoff_angle.radians());
         let of_angle = (2.0 * range_m * libm::cos(twice_rad) / libm::sin(twice_rad)).abs() * errors.takeoff_angle_sigma.radians();
@@ -110,7 +110,7 @@ impl Advisor<'_> {
 
     fn tolerance(&self) -> Option<AdviceRecord> {
         let missed_m = self.summary.missed_m.quantile(0.5)?;
-        let tolerance_m = self.planned.case.scenario.uncertainty?.goal_tolerance_m;
+        let tolerance_m = self.planned.case.scenario.uncertainty.as_ref()?.goal_tolerance_m;
         let reason = format!("half of the trials that stop off the goal are within {missed_m:.2} m of it");
         Some(record("uncertainty.goal_tolerance_m", format_number(tolerance_m), None, reason))
     }
@@ -129,7 +129,8 @@ impl Advisor<'_> {
 
     fn hop_limit(&self) -> Option<AdviceRecord> {
         let hops = self.hops().len();
-        let limit = self.planned.case.scenario.uncertainty?.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(hops));
+        let limit =
+            self.planned.case.scenario.uncertainty.as_ref()?.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(hops));
         let reason = format!("a greater one lets trials go on: the path has {hops} hops, and replanning takes more");
         Some(record("uncertainty.hop_limit", limit.to_string(), None, reason))
     }

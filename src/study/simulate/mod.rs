@@ -120,7 +120,7 @@ impl Trials {
     /// The trials of a plan, with the warnings about them. Nothing is read or flown yet.
     pub fn new(planned: &Arc<Planned>, options: &SimulateOptions) -> Self {
         let scenario = &planned.case.scenario;
-        let keys = scenario.uncertainty.unwrap_or_default();
+        let keys = scenario.uncertainty.clone().unwrap_or_default();
         let policies = if options.compare { Policy::ALL.to_vec() } else { vec![keys.policy] };
         let warnings = planned.path.as_ref().map(|path| {
             let ground = TrialGround::of_chain(scenario, &planned.case.prepared, path.hops.len());
@@ -146,7 +146,7 @@ impl Trials {
     /// [`SimulateError`].
     pub fn tally(&self, numbers: Range<u64>, progress: &dyn Progress) -> Result<Option<Tally>, SimulateError> {
         let Some(path) = &self.planned.path else { return Ok(None) };
-        let policy = self.planned.case.scenario.uncertainty.unwrap_or_default().policy;
+        let policy = self.planned.case.scenario.uncertainty.clone().unwrap_or_default().policy;
         let simulation = Flyer::new(&self.planned, &self.planned.found, &[policy], progress)?.simulation(path)?;
         let options = TrialOptions {
             policy,
@@ -203,7 +203,7 @@ impl Trials {
         }
         let hops = path.hops.len();
         let records: Vec<_> = summaries.iter().map(|summary| SimulationRecord::new(summary, hops)).collect();
-        let own = planned.case.scenario.uncertainty.unwrap_or_default().policy;
+        let own = planned.case.scenario.uncertainty.clone().unwrap_or_default().policy;
         let simulation = summaries.iter().position(|summary| summary.policy == own).map(|i| records[i].clone());
         let advice =
             summaries.iter().find(|summary| summary.policy == own).map(|summary| advice(&planned, summary)).unwrap_or_default();

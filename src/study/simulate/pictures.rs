@@ -11,7 +11,7 @@ use crate::{
     path::Hop,
     quantity::{ChainPoint, MapPoint},
     scenario::Scenario,
-    uncertainty::{HopRecord, LandingSummary, Summary, TrialOutcome, Uncertainty, Wilson},
+    uncertainty::{Distribution, HopRecord, LandingSummary, Summary, TrialOutcome, Uncertainty, Wilson},
 };
 
 impl Simulated {
@@ -45,7 +45,7 @@ impl Simulated {
 
 /// The caption: what was flown, under which errors, and the success rates.
 fn caption<'a>(scenario: &Scenario, summaries: impl Iterator<Item = &'a Summary>) -> Caption {
-    let keys = scenario.uncertainty.unwrap_or_default();
+    let keys = scenario.uncertainty.clone().unwrap_or_default();
     let mut lines =
         vec![format!("{}; goal tolerance {} m; seed {}", format_errors(&keys.errors), keys.goal_tolerance_m, keys.seed)];
     lines.extend(summaries.map(|summary| {
@@ -69,7 +69,14 @@ fn format_errors(errors: &Uncertainty) -> String {
             format!("{} {} {unit}", name.replace("_sigma", "").replace('_', " "), shortest(deviation))
         })
         .collect();
-    if words.is_empty() { "no errors".to_owned() } else { format!("standard deviations: {}", words.join(", ")) }
+    let deviations = match errors.distribution {
+        Distribution::Normal => "standard deviations",
+        Distribution::Uniform => "uniform, standard deviations",
+    };
+    let stated = (!words.is_empty()).then(|| format!("{deviations}: {}", words.join(", ")));
+    let measured = errors.measured.as_ref().map(|rows| format!("errors of {} measured hops", rows.row_count()));
+    let parts: Vec<String> = measured.into_iter().chain(stated).collect();
+    if parts.is_empty() { "no errors".to_owned() } else { parts.join("; ") }
 }
 
 /// A number without the rounding digits that a conversion of angles adds.

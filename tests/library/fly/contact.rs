@@ -243,7 +243,7 @@ fn along_a_slice_the_chain_and_the_map_agree() {
     let options = TrialOptions { trials: 1500, policy: Policy::OpenLoop, goal_tolerance_m: 4.0, ..TrialOptions::default() };
     let mut listeners = [Listener::default(), Listener::default()];
     for (mission, listener) in [on_chain, planned.mission()].into_iter().zip(&mut listeners) {
-        Simulation::new(&mission, errors).unwrap().run(&options, listener, &()).unwrap();
+        Simulation::new(&mission, errors.clone()).unwrap().run(&options, listener, &()).unwrap();
     }
     let [chain, map] = listeners;
     let start = planned.path.hops[0].takeoff.map().unwrap();
@@ -272,7 +272,7 @@ fn along_a_slice_chain_and_map_replan_the_same_hops() {
     let options = TrialOptions { trials: 150, policy: Policy::Replan, goal_tolerance_m: 1.0, ..TrialOptions::default() };
     let mut listeners = [Listener::default(), Listener::default()];
     for (mission, listener) in [planned.chain_mission(), planned.mission()].into_iter().zip(&mut listeners) {
-        Simulation::new(&mission, errors).unwrap().run(&options, listener, &()).unwrap();
+        Simulation::new(&mission, errors.clone()).unwrap().run(&options, listener, &()).unwrap();
     }
     let [chain, map] = listeners;
     let start = planned.path.hops[0].takeoff.map().unwrap();

@@ -9,6 +9,7 @@
 )]
 
 mod contact;
+mod lasting;
 mod outcomes;
 mod plans;
 mod scene;

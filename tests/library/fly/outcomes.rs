@@ -55,12 +55,12 @@ fn ravine() -> Scene {
 fn every_outcome_occurs_where_it_is_planted() {
     let none = Uncertainty::NONE;
     let flat = Scene::flat();
-    assert_eq!(count(&flat, none, &HUNDRED, TrialOutcome::Reached), 100);
+    assert_eq!(count(&flat, none.clone(), &HUNDRED, TrialOutcome::Reached), 100);
     // 1 m/s of 15 m/s moves the landing by some metres of 40 m.
-    let speed = Uncertainty { takeoff_speed_sigma_m_s: 1.0, ..none };
-    assert!(count(&flat, speed, &HUNDRED, TrialOutcome::Missed) > 80);
+    let speed = Uncertainty { takeoff_speed_sigma_m_s: 1.0, ..Uncertainty::NONE };
+    assert!(count(&flat, speed.clone(), &HUNDRED, TrialOutcome::Missed) > 80);
     // The chain extends 300 m to one side and 100 m to the other.
-    let wild = Uncertainty { takeoff_speed_sigma_m_s: 40.0, ..none };
+    let wild = Uncertainty { takeoff_speed_sigma_m_s: 40.0, ..Uncertainty::NONE };
     assert!(count(&flat, wild, &HUNDRED, TrialOutcome::Lost) > 20);
     // Cones of 2 degrees about the planned directions.
     let mut narrow = Scene::flat();
@@ -68,7 +68,7 @@ fn every_outcome_occurs_where_it_is_planted() {
     let of_cones =
         |takeoff, landing| SurfaceProperties { grip: Some(Grip::FromSlope { takeoff, landing }), rest: RestSlope::Unlimited };
     let open = AngleInterval::from_degrees(0.0, 180.0);
-    let turned = Uncertainty { takeoff_angle_sigma: Angle::from_degrees(3.0), ..none };
+    let turned = Uncertainty { takeoff_angle_sigma: Angle::from_degrees(3.0), ..Uncertainty::NONE };
     for (surface, outcome) in [
         (of_cones(about(45.0), AngleInterval::from_degrees(-180.0, 0.0)), TrialOutcome::SlidAtTakeoff),
         (of_cones(open, about(-45.0)), TrialOutcome::SlidAtLanding),
@@ -81,7 +81,7 @@ fn every_outcome_occurs_where_it_is_planted() {
             &surface,
         )
         .unwrap();
-        assert!(count(&narrow, turned, &HUNDRED, outcome) > 50);
+        assert!(count(&narrow, turned.clone(), &HUNDRED, outcome) > 50);
     }
     // Landing 1 % over the speed of the planned landing is too fast.
     let mut brittle = Scene::flat();
@@ -96,7 +96,7 @@ fn every_outcome_occurs_where_it_is_planted() {
     .unwrap();
     assert!(count(&brittle, speed, &HUNDRED, TrialOutcome::Damaged) > 20);
     // A robot that falls into the ravine cannot leave it.
-    let slow = Uncertainty { takeoff_speed_sigma_fraction: 0.2, ..none };
+    let slow = Uncertainty { takeoff_speed_sigma_fraction: 0.2, ..Uncertainty::NONE };
     assert!(count(&ravine(), slow, &REPLAN, TrialOutcome::Stuck) > 5);
     // It needs several hops and may fly one.
     let one_hop = TrialOptions { hop_limit: Some(1), ..HUNDRED };
@@ -130,7 +130,8 @@ fn zones_gaps_and_borders_lose_the_robot() {
     };
     let robot = (&scene.hopper, &scene.surface);
     let dem = scene.dem.clone().unwrap();
-    let (in_zones, listener) = lost(planned.over_dem(dem, Overlays::new(None, Some(zones)), planned.path.clone(), robot), aside);
+    let (in_zones, listener) =
+        lost(planned.over_dem(dem, Overlays::new(None, Some(zones)), planned.path.clone(), robot), aside.clone());
     assert!(in_zones > 50, "{in_zones} in the zones");
     for hop in listener.hops.iter().filter(|hop| hop.outcome == Some(TrialOutcome::Lost)) {
         assert!(hop.landed && (hop.contact_m.y >= 47.5 || hop.contact_m.y <= 46.5), "{hop:?}");
@@ -230,11 +231,11 @@ fn invalid_options_are_refused_by_name() {
     for (key, _, _) in none.by_key() {
         assert!(!key.is_empty());
     }
-    assert!(refused(Uncertainty { friction_sigma: -0.1, ..none }).contains("friction_sigma is -0.1"));
-    assert!(refused(Uncertainty { position_sigma_m: f64::INFINITY, ..none }).contains("position_sigma_m"));
-    assert!(refused(Uncertainty { height_correlation_m: 3.0, ..none }).contains("height_correlation_m is 3 m"));
-    assert!(refused(Uncertainty { height_sigma_m: 3.0, ..none }).contains("height_sigma_m is 3 m"));
-    assert!(refused(Uncertainty { heading_sigma: Angle::from_degrees(2.0), ..none }).contains("heading_sigma_deg"));
+    assert!(refused(Uncertainty { friction_sigma: -0.1, ..Uncertainty::NONE }).contains("friction_sigma is -0.1"));
+    assert!(refused(Uncertainty { position_sigma_m: f64::INFINITY, ..Uncertainty::NONE }).contains("position_sigma_m"));
+    assert!(refused(Uncertainty { height_correlation_m: 3.0, ..Uncertainty::NONE }).contains("height_correlation_m is 3 m"));
+    assert!(refused(Uncertainty { height_sigma_m: 3.0, ..Uncertainty::NONE }).contains("height_sigma_m is 3 m"));
+    assert!(refused(Uncertainty { heading_sigma: Angle::from_degrees(2.0), ..Uncertainty::NONE }).contains("heading_sigma_deg"));
     let impatient = Impatient::default();
     let error = simulation.run(&TrialOptions { trials: 9000, ..HUNDRED }, &mut (), &impatient).unwrap_err();
     assert!(matches!(error, SimulationError::Cancelled(Cancelled { stage: Stage::Trials, done: 2000, .. })));

@@ -162,9 +162,9 @@ fn the_robot_plans_by_its_map_not_by_the_drawn_ground() {
             planned.simulation(uncertainty).run(&options(60, Policy::Replan), &mut listener, &()).unwrap();
             listener.hops.into_iter().filter(|hop| hop.hop == 1).collect::<Vec<_>>()
         };
-        let nominal = first_hops(position);
+        let nominal = first_hops(position.clone());
         for other in [
-            Uncertainty { friction_sigma: 0.2, ..position },
+            Uncertainty { friction_sigma: 0.2, ..position.clone() },
             Uncertainty { height_sigma_m: 0.1, height_correlation_m: 20.0, ..position },
         ] {
             let mut compared = 0;

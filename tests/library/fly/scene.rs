@@ -168,20 +168,19 @@ impl Planned<'_> {
 
 /// Each error alone, large enough to matter in these scenes.
 pub(crate) fn each_error(on_a_map: bool) -> Vec<(&'static str, Uncertainty)> {
-    let none = Uncertainty::NONE;
     let degrees = Angle::from_degrees;
     let mut errors = vec![
-        ("speed", Uncertainty { takeoff_speed_sigma_m_s: 0.3, ..none }),
-        ("speed fraction", Uncertainty { takeoff_speed_sigma_fraction: 0.05, ..none }),
-        ("angle", Uncertainty { takeoff_angle_sigma: degrees(4.0), ..none }),
-        ("position", Uncertainty { position_sigma_m: 2.0, ..none }),
-        ("drift along", Uncertainty { drift_along_sigma_m: 1.0, ..none }),
-        ("drift across", Uncertainty { drift_across_sigma_m: 1.0, ..none }),
-        ("friction", Uncertainty { friction_sigma: 0.3, ..none }),
-        ("height", Uncertainty { height_sigma_m: 0.5, height_correlation_m: 4.0, ..none }),
+        ("speed", Uncertainty { takeoff_speed_sigma_m_s: 0.3, ..Uncertainty::NONE }),
+        ("speed fraction", Uncertainty { takeoff_speed_sigma_fraction: 0.05, ..Uncertainty::NONE }),
+        ("angle", Uncertainty { takeoff_angle_sigma: degrees(4.0), ..Uncertainty::NONE }),
+        ("position", Uncertainty { position_sigma_m: 2.0, ..Uncertainty::NONE }),
+        ("drift along", Uncertainty { drift_along_sigma_m: 1.0, ..Uncertainty::NONE }),
+        ("drift across", Uncertainty { drift_across_sigma_m: 1.0, ..Uncertainty::NONE }),
+        ("friction", Uncertainty { friction_sigma: 0.3, ..Uncertainty::NONE }),
+        ("height", Uncertainty { height_sigma_m: 0.5, height_correlation_m: 4.0, ..Uncertainty::NONE }),
     ];
     if on_a_map {
-        errors.push(("heading", Uncertainty { heading_sigma: degrees(4.0), ..none }));
+        errors.push(("heading", Uncertainty { heading_sigma: degrees(4.0), ..Uncertainty::NONE }));
     }
     errors
 }
