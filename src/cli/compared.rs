@@ -46,7 +46,7 @@ fn compared(file: &Path, args: &CompareArgs) -> Result<(Loaded, Compared), Failu
     let common = CommonArgs::of_scenarios(&args.set, args.accept_map_scale, args.input_max_gib, args.quiet);
     let loaded = load_scenario(file, &common, Purpose::Compare)?;
     loaded.ends()?;
-    let options = PlanOptions { proof: args.prove.proof(), verify: false };
+    let options = PlanOptions { proof: args.prove.proof(), ..PlanOptions::default() };
     let planned = plan(&loaded.case, options, &Progress::new(args.quiet))?;
     output::warn_all(args.quiet, &planned.warnings);
     Ok((loaded, Compared::of(planned, relative_name(file), &file.display().to_string())))

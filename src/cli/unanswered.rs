@@ -48,6 +48,7 @@ impl From<PlanError> for Failure {
         match error {
             PlanError::Journey(error) => error.into(),
             PlanError::TooManyHops(error) => Self::of(&error),
+            PlanError::Front(error) => Self::message(format!("--front: {error}")),
             other => Self::of(&other),
         }
     }
@@ -77,14 +78,7 @@ impl From<SimulateError> for Failure {
 
 impl From<ExperimentError> for Failure {
     fn from(error: ExperimentError) -> Self {
-        match error {
-            ExperimentError::Trials(error) => error.into(),
-            ExperimentError::NoUncertainty => Self::message(format!("--experiment: {error}")),
-            ExperimentError::Replans => {
-                Self::message(format!("--experiment: {}: add --policy open-loop", ExperimentError::REPLANS))
-            }
-            other => Self::of(&other),
-        }
+        Self::of(&error)
     }
 }
 

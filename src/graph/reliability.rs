@@ -191,6 +191,31 @@ pub fn preferred_path(front: &[ReliablePath]) -> Option<usize> {
     Some(best.and_then(|best| front.iter().position(|path| path.success >= Some(ENOUGH * best))).unwrap_or(last))
 }
 
+/// Of a front, the path to fly under a budget of success: the fewest hops whose success is at least `success_min`; without any, the one of
+/// the greatest success.
+///
+/// # Returns
+/// An index, and whether the success is enough; `None` where no path has a success.
+///
+/// # Examples
+/// ```
+/// use chta::graph::{ReliablePath, path_within_budget};
+/// let path = |success| ReliablePath { legs: Vec::new(), cost: Default::default(), weight: 1.0, success };
+/// let front = [path(Some(0.4)), path(Some(0.95)), path(Some(0.96))];
+/// assert_eq!(path_within_budget(&front, 0.3), Some((0, true)));
+/// assert_eq!(path_within_budget(&front, 0.96), Some((2, true)));
+/// assert_eq!(path_within_budget(&front, 0.97), Some((2, false)));
+/// assert_eq!(path_within_budget(&[path(None)], 0.0), None);
+/// ```
+pub fn path_within_budget(front: &[ReliablePath], success_min: f64) -> Option<(usize, bool)> {
+    if let Some(enough) = front.iter().position(|path| path.success.is_some_and(|success| success >= success_min)) {
+        return Some((enough, true));
+    }
+    let estimated = front.iter().enumerate().filter_map(|(i, path)| Some((i, path.success?)));
+    let best = estimated.reduce(|best, next| if next.1 > best.1 { next } else { best })?;
+    Some((best.0, false))
+}
+
 /// An edge to a node, with its number of hops.
 #[derive(Clone, Copy)]
 pub(super) struct Step {

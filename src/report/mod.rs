@@ -21,6 +21,7 @@ mod require_answer;
 mod simulate_answer;
 mod size_answer;
 mod stated;
+mod success_record;
 mod text;
 mod trade_answer;
 mod trajectory;
@@ -31,7 +32,7 @@ pub use check_answer::{
 pub use compare_answer::{CompareAnswer, CompareRow, MarginsRecord};
 pub use document::{CrsRecord, Document, DocumentKind, DocumentProblem, InputFile};
 pub use experiment_answer::{
-    ConeWidthAnswer, ConeWidthRecord, DriftRecord, ExperimentAnswer, RiskTradeAnswer, RiskTradeRow, TradedPath, WorstDriftAnswer,
+    ConeWidthAnswer, ConeWidthRecord, DriftRecord, ExperimentAnswer, WorstDriftAnswer,
 };
 pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::{path_geojson, paths_geojson, slice_geojson};
@@ -55,6 +56,7 @@ pub use simulate_answer::{
     EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord, simulate_text,
 };
 pub use size_answer::{SizeAnswer, SizeRecord};
+pub use success_record::{FrontRecord, SuccessBudgetRecord, estimate_ci95, front_text};
 pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};
 pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow, with_unit};
 pub use trajectory::{trajectory_columns, write_trajectory_csv};

@@ -3,7 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{CheckAnswer, FurtherMeans, HopRecord, ReliablePathRecord, TotalsRecord, check_text, path_text, reliable_paths_text};
+use super::{
+    CheckAnswer, FrontRecord, FurtherMeans, HopRecord, ReliablePathRecord, TotalsRecord, check_text, front_text, path_text,
+    reliable_paths_text,
+};
 
 /// The answer of a plan: the check, the path, its totals.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -21,6 +24,9 @@ pub struct PlanAnswer {
     /// The Pareto front of hops against success probability, where the scenario weighs risk.
     #[serde(rename = "surest", default, skip_serializing_if = "Vec::is_empty")]
     pub reliable_paths: Vec<ReliablePathRecord>,
+    /// The front of hops against reliability, in ascending order of both; empty without a path, absent if not requested.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub front: Option<Vec<FrontRecord>>,
 }
 
 /// The text of `chta plan`.
@@ -30,7 +36,10 @@ pub fn plan_text(answer: &PlanAnswer, means: FurtherMeans<'_>) -> String {
         text.push('\n');
         text.push_str(&path_text(&answer.path, totals));
     }
-    text.push_str(&reliable_paths_text(&answer.reliable_paths));
+    match &answer.front {
+        Some(front) => text.push_str(&front_text(front)),
+        None => text.push_str(&reliable_paths_text(&answer.reliable_paths)),
+    }
     if answer.verified == Some(true) {
         let of = if answer.check.propellant_shortage.is_some() { " of a hop" } else { "" };
         text.push_str("verified: every hop was flown again by direct simulation and breaks no limit");

@@ -274,6 +274,9 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
     if let Some(shortage) = &answer.propellant_shortage {
         sheet.line(format_args!("not with its propellant: {}", shortage.sentence()));
     }
+    if let Some(budget) = &answer.success_budget {
+        sheet.line(format_args!("{}", budget.sentence()));
+    }
     if let Some(refusal) = &answer.commands_refusal {
         sheet.line(format_args!("not with commands in steps: {refusal}"));
     }

@@ -128,6 +128,7 @@ const STEP_ANGLE: Kind = Kind::Number { min: 1e-6, max: 90.0 };
 const COORDINATE: Kind = Kind::Number { min: -1e12, max: 1e12 };
 /// No working machine has a standard deviation beyond these bounds.
 const SHARE: Kind = Kind::Number { min: 0.0, max: 100.0 };
+const PROPORTION: Kind = Kind::Number { min: 0.0, max: 1.0 };
 const SIGMA_ANGLE: Kind = Kind::Number { min: 0.0, max: 180.0 };
 const ELEVATION_ANGLE: Kind = Kind::Number { min: -90.0, max: 90.0 };
 
@@ -142,7 +143,7 @@ const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 73] = [
+pub const CATALOGUE: [Key; 74] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -296,6 +297,13 @@ pub const CATALOGUE: [Key; 73] = [
         Kind::Count { min: 1, max: 1000 },
         "hops beyond the fewest that a more reliable path may take; absent: 10, or half the fewest if that is more",
     ),
+    key(
+        "budget",
+        "estimated_success_min",
+        PROPORTION,
+        "least success, 0 to 1, that the fixed trials of a path estimate: the fewest hops that have it, in place of 0.98 of the best; without \
+         any the answer is no; needs [uncertainty]",
+    ),
     key("uncertainty", "takeoff_speed_sigma_m_s", FROM_ZERO, "standard deviation of the take-off speed, m/s"),
     key(
         "uncertainty",
@@ -356,6 +364,7 @@ mod tests {
             "mesh_scale",
             "no_data",
             "risk_extra_hops_max",
+            "estimated_success_min",
             "takeoff_speed_sigma_fraction",
             "friction_sigma",
             "hop_limit",

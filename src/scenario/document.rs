@@ -19,6 +19,10 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     tables.insert("surface".to_owned(), surface(scenario, named));
     tables.insert("terrain".to_owned(), terrain(scenario, named));
     tables.insert("search".to_owned(), search(scenario));
+    tables.insert(
+        "budget".to_owned(),
+        object([("estimated_success_min", scenario.budget.estimated_success_min.map(Value::from))]),
+    );
     tables.insert("uncertainty".to_owned(), scenario.uncertainty.as_ref().map_or_else(|| json!({}), uncertainty));
     tables.insert("report".to_owned(), object([("title", scenario.title.clone().map(Value::from))]));
     tables.retain(|_, table| table.as_object().is_none_or(|keys| !keys.is_empty()));

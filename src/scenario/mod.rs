@@ -1,6 +1,7 @@
 //! The scenario: TOML as typed, then validated, and written again.
 
 mod backslashes;
+mod budget;
 mod catalogue;
 mod document;
 mod entries;
@@ -11,6 +12,7 @@ mod read;
 mod schema;
 mod trials;
 
+pub use budget::Budget;
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    Entries, Place, ProblemKind, ScenarioProblem, UncertaintyKeys,
+    Budget, Entries, Place, ProblemKind, ScenarioProblem, UncertaintyKeys,
     propulsion::{self, landing},
 };
 use crate::{
@@ -118,6 +118,8 @@ pub struct Scenario {
     pub risk: ReliabilityUse,
     /// Hops beyond the fewest that a more reliable path may take, if hops are traded for reliability.
     pub risk_extra_hops_max: Option<u32>,
+    /// What a path has to give at least.
+    pub budget: Budget,
     /// The errors of the trials, if the scenario has `[uncertainty]`.
     pub uncertainty: Option<UncertaintyKeys>,
     /// Title of the picture.
@@ -149,7 +151,9 @@ impl Scenario {
         let via = via(&mut entries, terrain.as_ref());
         let [friction_raster, keep_out] = overlays(&mut entries, &surface, terrain.as_ref());
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
-        let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries, uncertainty.as_ref());
+        let budget = super::budget::budget(&entries);
+        let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries, uncertainty.as_ref(), budget);
+        super::budget::check(&mut entries, budget, risk, uncertainty.as_ref());
         let search = search(&mut entries, super::trials::takeoff_choice(risk, uncertainty.as_ref()));
         let mut problems = entries.problems().to_vec();
         let Some(body) = body.filter(|_| problems.is_empty()) else {
@@ -175,6 +179,7 @@ impl Scenario {
             search,
             risk,
             risk_extra_hops_max,
+            budget,
             uncertainty,
             title: entries.text("report", "title").map(str::to_owned),
         })

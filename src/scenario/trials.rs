@@ -1,6 +1,6 @@
 //! `[uncertainty]`: the errors of command, ground and position, and how many trials are flown.
 
-use super::{Entries, ProblemKind, Scenario, TerrainSource};
+use super::{Budget, Entries, ProblemKind, Scenario, TerrainSource};
 use crate::{
     ballistics::TakeoffChoice,
     graph::{ReliabilityOptions, ReliabilityUse, RiskModel, TakeoffScatter},
@@ -107,9 +107,14 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
 }
 
 /// How risk weighs, and how many extra hops it may cost. Where errors are given, hops are traded for reliability unless the scenario says
-/// otherwise: a path planned without regard to them stands on the edge of its limits.
-pub(super) fn risk(entries: &mut Entries, uncertainty: Option<&UncertaintyKeys>) -> (ReliabilityUse, Option<u32>) {
-    let absent = if has_errors(uncertainty) { ReliabilityUse::Traded } else { ReliabilityUse::Ignored };
+/// otherwise: a path planned without regard to them stands on the edge of its limits. A budget of success weighs errors of 0 as well.
+pub(super) fn risk(
+    entries: &mut Entries,
+    uncertainty: Option<&UncertaintyKeys>,
+    budget: Budget,
+) -> (ReliabilityUse, Option<u32>) {
+    let is_estimated = uncertainty.is_some() && budget.estimated_success_min.is_some();
+    let absent = if is_estimated || has_errors(uncertainty) { ReliabilityUse::Traded } else { ReliabilityUse::Ignored };
     let given = super::read::find(&ReliabilityUse::ALL, ReliabilityUse::name, entries.text("search", "risk"));
     let risk = given.unwrap_or(absent);
     let extra = entries.count("search", "risk_extra_hops_max").and_then(|hops| u32::try_from(hops).ok());

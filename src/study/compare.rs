@@ -65,7 +65,7 @@ impl Comparison {
 /// # Errors
 /// [`PlanError`] if it was cancelled.
 pub fn compare(cases: &[(&str, &Case)], proof: Option<Proof>, progress: &dyn Progress) -> Result<Comparison, PlanError> {
-    let options = PlanOptions { proof, verify: false };
+    let options = PlanOptions { proof, ..PlanOptions::default() };
     let compared = |&(file, case): &(&str, &Case)| match plan(case, options, progress) {
         Ok(planned) => Ok(Ok(Compared::of(planned, file.to_owned(), file))),
         Err(error) if error.is_cancelled() => Err(error),

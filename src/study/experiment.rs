@@ -2,20 +2,17 @@
 
 use serde::Serialize;
 
-use super::{Planned, SimulateError, dem_ground::dem_ground, front::FlownJourney, simulate::Flyer};
+use super::Planned;
 #[cfg(feature = "plot")]
 use crate::figure::{ConeWidthFigure, FigureError, LandingErrorFigure, Picture, draw_cone_width, draw_landing_errors};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain},
-    graph::{self, NodeSet, NodesError, Outcome, SearchError, SearchOptions, most_reliable_paths, search_most_reliable},
+    graph::{self, Outcome, SearchError, search_most_reliable},
     hop::HopTest,
     path::{Hop, PathError, generate},
     progress::Progress,
-    report::{ConeWidthAnswer, RiskTradeAnswer, RiskTradeRow, TradedPath, WorstDriftAnswer},
-    uncertainty::{
-        Policy,
-        experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
-    },
+    report::{ConeWidthAnswer, WorstDriftAnswer},
+    uncertainty::experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
     world::Direction,
 };
 
@@ -29,12 +26,6 @@ pub enum ExperimentError {
     /// A path that is not generated.
     #[error(transparent)]
     Path(#[from] PathError),
-    /// The nodes of the most reliable paths.
-    #[error(transparent)]
-    Nodes(#[from] NodesError),
-    /// The trials.
-    #[error(transparent)]
-    Trials(#[from] SimulateError),
     /// Cones of another width.
     #[error("cones at {share} of their width: {problem}")]
     Cones {
@@ -43,20 +34,6 @@ pub enum ExperimentError {
         /// The problem.
         problem: ConeProblem,
     },
-    /// Trials of a scenario without errors.
-    #[error("risk-trade flies trials, but the scenario has no [uncertainty]: add its deviations and goal_tolerance_m")]
-    NoUncertainty,
-    /// Trials that do not follow their path.
-    #[error("{}: set uncertainty.policy to \"open-loop\"", Self::REPLANS)]
-    Replans,
-    /// No path to compare with.
-    #[error("there is no nominal path to compare with")]
-    NoPath,
-}
-
-impl ExperimentError {
-    /// What is found where trials do not follow their path.
-    pub const REPLANS: &str = "risk-trade compares planned paths, but the policy is replan, which does not follow a planned path";
 }
 
 /// Why a chain with cones of another width gives no path.
@@ -82,8 +59,6 @@ pub enum ExperimentAnswer {
     WorstDrift(WorstDriftAnswer),
     /// Of [`Experiment::ConeWidth`].
     ConeWidth(ConeWidthAnswer),
-    /// Of [`Experiment::RiskTrade`].
-    RiskTrade(RiskTradeAnswer),
 }
 
 impl ExperimentAnswer {
@@ -92,7 +67,6 @@ impl ExperimentAnswer {
         match self {
             Self::WorstDrift(answer) => answer.text(),
             Self::ConeWidth(answer) => answer.text(),
-            Self::RiskTrade(answer) => answer.text(),
         }
     }
 
@@ -105,21 +79,14 @@ impl ExperimentAnswer {
         match self {
             Self::WorstDrift(answer) => Some(draw_landing_errors(&LandingErrorFigure::of_worst_drift(answer, title))),
             Self::ConeWidth(answer) => Some(draw_cone_width(&ConeWidthFigure::of(answer, title))),
-            Self::RiskTrade(_) => None,
         }
     }
 }
 
-/// An experiment that was run.
-#[derive(Clone, Debug)]
-pub struct Experimented {
-    /// The answer as plain data; `None` without hops to experiment with.
-    pub answer: Option<ExperimentAnswer>,
-    /// The warnings about its trials.
-    pub warnings: Vec<String>,
-}
-
 /// Runs an experiment on a plan. `reading`: how [`Experiment::WorstDrift`] interprets the paper; the others ignore it.
+///
+/// # Returns
+/// The answer as plain data; `None` without hops to experiment with.
 ///
 /// # Errors
 /// [`ExperimentError`].
@@ -128,13 +95,11 @@ pub fn experiment(
     which: Experiment,
     reading: DriftReading,
     progress: &dyn Progress,
-) -> Result<Experimented, ExperimentError> {
+) -> Result<Option<ExperimentAnswer>, ExperimentError> {
     let Some(path) = planned.path.as_ref().filter(|path| !path.hops.is_empty()) else {
-        return Ok(Experimented { answer: None, warnings: Vec::new() });
+        return Ok(None);
     };
-    let keys = planned.case.scenario.uncertainty;
-    let seed = keys.unwrap_or_default().seed;
-    let mut warnings = Vec::new();
+    let seed = planned.case.scenario.uncertainty.unwrap_or_default().seed;
     let answer = match which {
         Experiment::WorstDrift => {
             let numbers = DriftExperiment::of_the_paper(reading, seed);
@@ -142,13 +107,8 @@ pub fn experiment(
             ExperimentAnswer::WorstDrift(WorstDriftAnswer::new(&numbers, &landings))
         }
         Experiment::ConeWidth => ExperimentAnswer::ConeWidth(cone_widths(planned, &path.hops, seed, progress)?),
-        Experiment::RiskTrade => {
-            let answer = ExperimentAnswer::RiskTrade(risk_trade(planned, progress)?);
-            warnings.extend(keys.and_then(|keys| keys.warning()).map(str::to_owned));
-            answer
-        }
     };
-    Ok(Experimented { answer: Some(answer), warnings })
+    Ok(Some(answer))
 }
 
 /// Plans and flies with successively narrower cones, on the same draws.
@@ -190,34 +150,4 @@ fn mean_takeoff_width_deg(chain: &ConstrainedChain) -> f64 {
     let widths: Vec<f64> =
         stated.map(|line| line.takeoff.angles()).map(|angles| angles.max.degrees() - angles.min.degrees()).collect();
     widths.iter().sum::<f64>() / widths.len().max(1) as f64
-}
-
-/// The most reliable path for every number of hops, estimated and flown.
-fn risk_trade(planned: &Planned, progress: &dyn Progress) -> Result<RiskTradeAnswer, ExperimentError> {
-    let Planned { case, test, ends: (start, goal), found, .. } = planned;
-    let scenario = &case.scenario;
-    let keys = scenario.uncertainty.ok_or(ExperimentError::NoUncertainty)?;
-    if keys.policy == Policy::Replan {
-        return Err(ExperimentError::Replans);
-    }
-    let nodes = NodeSet::new(test.chain(), *start, *goal, found.spacing)?;
-    let ground = dem_ground(case)?;
-    let reliability = scenario.reliability_with(scenario.risk_extra_hops_max, ground.as_ref());
-    let mut reliable_paths = most_reliable_paths(test, &nodes, &scenario.search, &reliability, progress)?;
-    let journey = FlownJourney { scenario, test, ends: planned.ends, ground: ground.as_ref() };
-    journey.estimate(&mut found.clone(), &mut reliable_paths, progress)?;
-    // The path planned without regard to risk, over the same nodes.
-    let without_risk = SearchOptions { spacing: Some(found.spacing), ..scenario.search.clone() };
-    let plain = graph::search(test, *start, *goal, &without_risk, progress)?;
-    let Outcome::Path { legs, .. } = &plain.outcome else { return Err(ExperimentError::NoPath) };
-    let path = case.prepared.path(test, legs, &scenario.search)?;
-    let flyer = Flyer::new(planned, &plain, &[keys.policy], progress)?;
-    let options = keys.options();
-    let mut rows = vec![RiskTradeRow::new(TradedPath::LeastEffort, path.hops.len(), None, &flyer.fly(&path, &options, progress)?)];
-    for candidate in &reliable_paths {
-        let path = case.prepared.path(test, &candidate.legs, &scenario.search)?;
-        let summary = flyer.fly(&path, &options, progress)?;
-        rows.push(RiskTradeRow::new(TradedPath::MostReliable, path.hops.len(), candidate.success, &summary));
-    }
-    Ok(RiskTradeAnswer { trials: keys.trials, seed: keys.seed, policy: keys.policy, paths: rows })
 }

@@ -67,7 +67,7 @@ pub use options::{MissionPoint, Observer, SimulationError, TrialOptions};
 pub use outcome::{OutcomeCounts, Policy, TrialOutcome};
 pub use quantiles::QuantileSketch;
 pub use record::{HopRecord, Trajectory, TrialRecord};
-pub use simulation::{FlightEnd, Simulation};
+pub use simulation::{ESTIMATE_TRIALS, FlightEnd, Simulation};
 pub use summary::{ErrorSummary, LandingEllipse, LandingSummary, RatePoint, Summary};
 pub use tally::{MergeProblem, Tally};
 pub use wilson::Wilson;

@@ -24,6 +24,9 @@ use crate::{
 /// The success rate is checked after this many trials.
 const BATCH: u64 = 1000;
 
+/// The fixed trials that estimate the success of a path.
+pub const ESTIMATE_TRIALS: u64 = 512;
+
 /// Trials that one thread flies in one task: a batch then employs twenty threads, and the overhead per task is negligible.
 const STRETCH: u64 = 50;
 
@@ -138,11 +141,10 @@ impl Simulation {
     /// # Errors
     /// As [`run`](Self::run).
     pub fn estimated_success(&self, options: &TrialOptions, progress: &dyn Progress) -> Result<f64, SimulationError> {
-        const TRIALS: u64 = 512;
         /// Apart from the seeds that users give.
         const SEED: u64 = 0x6368_7461;
         let fixed =
-            TrialOptions { trials: TRIALS, seed: SEED, first_trial: 0, until_half_width: None, trajectories: 0, ..*options };
+            TrialOptions { trials: ESTIMATE_TRIALS, seed: SEED, first_trial: 0, until_half_width: None, trajectories: 0, ..*options };
         Ok(self.run(&fixed, &mut (), progress)?.success.rate)
     }
 

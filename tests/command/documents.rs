@@ -50,7 +50,7 @@ const COMMANDS: [&str; 43] = [
     "simulate data/scenarios/wall.toml",
     "simulate data/scenarios/paper_76m.toml --experiment worst-drift",
     "simulate data/scenarios/paper_76m.toml --experiment cone-width",
-    "simulate data/scenarios/rolling_surely.toml --experiment risk-trade --trials 200",
+    "plan data/scenarios/rolling_surely.toml --front hops,risk",
     "require data/scenarios/paper_76m.toml --vary hopper.takeoff_speed_max_m_s --from 2 --to 20",
     "require data/scenarios/wall.toml --vary hopper.takeoff_speed_max_m_s --from 1 --to 2",
     "trade data/scenarios/paper_76m.toml --vary hopper.takeoff_speed_max_m_s=4:8:3 --vary hopper.landing_speed_max_m_s=4:8:2 --prove",

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use chta::{
     graph::proof::DEFAULT_BUDGET_CELLS,
-    study::{Case, SimulateOptions},
+    study::{Case, Front, SimulateOptions},
     uncertainty::experiments::{DriftReading, Experiment},
 };
 use clap::Args as ClapArgs;
@@ -115,6 +115,13 @@ pub(crate) struct PlanArgs {
     /// Fly the path again by direct simulation and check every limit
     #[arg(long)]
     pub(crate) verify: bool,
+    /// Front of two amounts over the same nodes: hops,risk, the most reliable path for every number of hops, with its success
+    /// estimated by 512 fixed trials under the scenario's policy; needs [uncertainty]
+    #[arg(long, value_name = "AMOUNTS")]
+    pub(crate) front: Option<String>,
+    /// Picture of the front (SVG or PNG) to write
+    #[arg(long, value_name = "FILE", requires = "front")]
+    pub(crate) plot_front: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) trajectory: TrajectoryArgs,
     #[command(flatten)]
@@ -149,8 +156,7 @@ pub(crate) struct SimulateArgs {
     /// Stop once the success rate's 95 % interval is at most 2 W wide; checked every 1000 trials [default: fly all trials]
     #[arg(long, value_name = "W", allow_negative_numbers = true)]
     pub(crate) until_half_width: Option<f64>,
-    /// Experiment to run instead: worst-drift (the paper's), cone-width (the paper's claim), risk-trade (hops against
-    /// reliability) [default: none]
+    /// Experiment to run instead: worst-drift (the paper's), cone-width (the paper's claim) [default: none]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["compare", "until_half_width"])]
     pub(crate) experiment: Option<String>,
     /// How worst-drift interprets the paper: noise-at-landing, noise-in-flight, farthest-from-goal [default: noise-at-landing]
@@ -267,6 +273,17 @@ pub(crate) struct CompareArgs {
     pub(crate) quiet: bool,
 }
 
+impl PlanArgs {
+    /// The front by its amounts.
+    pub(crate) fn front(&self) -> Result<Option<Front>, Failure> {
+        let Some(given) = self.front.as_deref() else { return Ok(None) };
+        let found = Front::ALL.into_iter().find(|front| front.name() == given);
+        let possible = || Front::ALL.map(Front::name).join(", or ");
+        let none = || Failure::message(format!("--front: found '{given}', expected {}: no other front is planned yet", possible()));
+        found.ok_or_else(none).map(Some)
+    }
+}
+
 impl SimulateArgs {
     /// The scenario keys set by the options of trials; they are checked and written as keys of the scenario.
     pub(crate) fn own_keys(&self) -> Vec<OwnKey<'static>> {
@@ -306,17 +323,21 @@ impl SimulateArgs {
                 format!("--trajectory: the experiment {name} flies no nominal path: omit one of --trajectory and --experiment");
             return Err(Failure::message(message));
         }
+        if name == "risk-trade" {
+            // Its name of old.
+            return Err(Failure::message(
+                "--experiment risk-trade is now chta plan --front hops,risk: give that command, expected here worst-drift or cone-width",
+            ));
+        }
         let experiment = named(&Experiment::ALL, Experiment::name, name, "--experiment")?;
         let reading = self.reading.as_deref().map(|reading| named(&DriftReading::ALL, DriftReading::name, reading, "--reading"));
         let reading = reading.transpose()?.unwrap_or_default();
-        let trades = experiment == Experiment::RiskTrade;
         let without_effect = [
             ("--output", self.output.is_some()),
             ("--reading", self.reading.is_some() && experiment != Experiment::WorstDrift),
-            ("--trials", self.trials.is_some() && !trades),
-            ("--policy", self.policy.is_some() && !trades),
-            ("--threads", self.answer.threads != 0 && !trades),
-            ("--plot", self.plot.is_some() && trades),
+            ("--trials", self.trials.is_some()),
+            ("--policy", self.policy.is_some()),
+            ("--threads", self.answer.threads != 0),
         ];
         match without_effect.into_iter().find(|(_, given)| *given) {
             Some((option, _)) => {

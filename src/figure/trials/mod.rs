@@ -7,6 +7,7 @@ mod convergence;
 mod data;
 mod diagram;
 mod flown;
+mod front;
 mod outcomes;
 
 #[cfg(test)]
@@ -14,7 +15,7 @@ mod outcomes;
 mod tests;
 
 pub use data::{
-    ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, LandingBoxes, LandingErrorFigure,
+    ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, FrontFigure, FrontPoint, LandingBoxes, LandingErrorFigure,
     OutcomeBars, SimulationFigure, Success,
 };
 
@@ -105,6 +106,15 @@ pub fn draw_convergence(caption: &Caption, bars: &[OutcomeBars]) -> Result<Pictu
 /// None today; [`FigureError`] as for the other pictures.
 pub fn draw_cone_width(figure: &ConeWidthFigure) -> Result<Picture, FigureError> {
     alone(&figure.caption, |sheet, top| Ok(cone_width::draw(sheet, &figure.points, top)))
+}
+
+/// Draws the estimated success of paths over their hops, with the 95 % intervals of the estimates, the path of the plan and the least
+/// success wanted.
+///
+/// # Errors
+/// None today; [`FigureError`] as for the other pictures.
+pub fn draw_front(figure: &FrontFigure) -> Result<Picture, FigureError> {
+    alone(&figure.caption, |sheet, top| Ok(front::draw(sheet, figure, top)))
 }
 
 /// A picture of one panel.

@@ -9,7 +9,7 @@ use crate::{
     path::HopPath,
     progress::Progress,
     study::{Planned, dem_ground::dem_ground, front::FlownJourney},
-    uncertainty::{Policy, Simulation, Summary, TrialOptions},
+    uncertainty::{Policy, Simulation},
 };
 
 /// A plan with everything that its trials need.
@@ -48,15 +48,5 @@ impl<'a> Flyer<'a> {
     /// The trials along a path over this ground.
     pub(super) fn simulation(&self, path: &HopPath) -> Result<Simulation, SimulateError> {
         self.journey().simulation(path, self.to_go.as_ref())
-    }
-
-    /// Flies the trials of a path over this ground.
-    pub(in crate::study) fn fly(
-        &self,
-        path: &HopPath,
-        options: &TrialOptions,
-        progress: &dyn Progress,
-    ) -> Result<Summary, SimulateError> {
-        Ok(self.simulation(path)?.run(options, &mut (), progress)?)
     }
 }

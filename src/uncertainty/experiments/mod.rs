@@ -15,20 +15,17 @@ pub enum Experiment {
     WorstDrift,
     /// Narrower cones about the vertical on the same draws (P section V-B, last sentence).
     ConeWidth,
-    /// Hops against reliability: the most reliable path for every number of hops, estimated and flown.
-    RiskTrade,
 }
 
 impl Experiment {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::WorstDrift, Self::ConeWidth, Self::RiskTrade];
+    pub const ALL: [Self; 2] = [Self::WorstDrift, Self::ConeWidth];
 
     /// The name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::WorstDrift => "worst-drift",
             Self::ConeWidth => "cone-width",
-            Self::RiskTrade => "risk-trade",
         }
     }
 }
