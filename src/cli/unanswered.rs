@@ -93,6 +93,8 @@ impl From<RequireError> for Failure {
         match error {
             RequireError::Case(error) => error.into(),
             RequireError::Search(error) => Self::of(&error),
+            RequireError::Journey(error) => error.into(),
+            RequireError::NoSuccessWanted { .. } => Self::message(format!("--vary {error}, or --success-min 0.9")),
             RequireError::Range(problem) => Self::message(format!("--from and --to: {problem}")),
             RequireError::Resolution { .. } => Self::message(format!("--{error}")),
             other => Self::message(format!("--vary {other}")),

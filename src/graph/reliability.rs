@@ -57,6 +57,15 @@ pub struct ReliabilityOptions {
 }
 
 impl ReliabilityOptions {
+    /// The same, with hops flown under the limits of this chain where no DEM is flown over; `None`: under those that they are planned with.
+    #[must_use]
+    pub fn flown_under(mut self, limits_of: Option<&HopTest>) -> Self {
+        if let RiskModel::Flown { whole, .. } = &mut self.model {
+            *whole = limits_of.cloned();
+        }
+        self
+    }
+
     /// How many hops more than the fewest a path may take.
     pub fn extra_hops(&self, fewest: u64) -> u64 {
         self.extra_hops_max.map_or_else(|| (fewest / 2).max(10), u64::from)

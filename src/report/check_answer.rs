@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    hop_answer::BindingRecord, limit_counts::LimitCounts, proof_record::ProofRecord, propellant_record::PropellantShortage,
-    success_record::SuccessBudgetRecord,
+    derating_record::DeratingRecord, hop_answer::BindingRecord, limit_counts::LimitCounts, proof_record::ProofRecord,
+    propellant_record::PropellantShortage, success_record::SuccessBudgetRecord,
 };
 use crate::{
     graph::{
@@ -53,6 +53,9 @@ pub struct CheckAnswer {
     /// Of a scenario with a budget of success: whether the path has it; if not, the verdict is `no-path-found`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub success_budget: Option<SuccessBudgetRecord>,
+    /// The shares of the limits that this answer, and a proof, is for; absent if it is for the whole limits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derating: Option<DeratingRecord>,
     /// If no commands in the machine's steps fly the path; the verdict is then `no-path-found`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub commands_refusal: Option<String>,
@@ -202,6 +205,7 @@ impl CheckAnswer {
             frontier,
             propellant_shortage: None,
             success_budget: None,
+            derating: None,
             commands_refusal: None,
             landing_miss_max_m: None,
             beside_line: false,
@@ -248,6 +252,13 @@ impl CheckAnswer {
     pub fn with_success_budget(mut self, budget: Option<SuccessBudgetRecord>) -> Self {
         self.success_budget = budget;
         if budget.is_some_and(|budget| !budget.met) { self.open() } else { self }
+    }
+
+    /// Adds the shares of the limits that it is for.
+    #[must_use]
+    pub const fn with_derating(mut self, derating: Option<DeratingRecord>) -> Self {
+        self.derating = derating;
+        self
     }
 
     /// The answer no, which nothing proves.

@@ -2,6 +2,7 @@
 
 mod check_answer;
 mod compare_answer;
+mod derating_record;
 mod document;
 mod experiment_answer;
 mod fan_answer;
@@ -30,10 +31,9 @@ pub use check_answer::{
     CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, JourneyEnd, MissRecord, PairsAnswer, verdict_of,
 };
 pub use compare_answer::{CompareAnswer, CompareRow, MarginsRecord};
+pub use derating_record::DeratingRecord;
 pub use document::{CrsRecord, Document, DocumentKind, DocumentProblem, InputFile};
-pub use experiment_answer::{
-    ConeWidthAnswer, ConeWidthRecord, DriftRecord, ExperimentAnswer, WorstDriftAnswer,
-};
+pub use experiment_answer::{ConeWidthAnswer, ConeWidthRecord, DriftRecord, ExperimentAnswer, WorstDriftAnswer};
 pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::{path_geojson, paths_geojson, slice_geojson};
 pub use hop_answer::{
@@ -51,7 +51,7 @@ pub use plan_answer::{PlanAnswer, plan_text};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
 pub use propellant_record::{PropellantShortage, StoresRecord};
 pub use reliability_record::{ReliablePathRecord, reliable_paths_text};
-pub use require_answer::{RequireAnswer, RequireTry};
+pub use require_answer::{RequireAnswer, RequireSuccessRecord, RequireTry, SuccessTry};
 pub use simulate_answer::{
     EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord, simulate_text,
 };

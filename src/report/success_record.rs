@@ -145,7 +145,10 @@ mod tests {
     #[test]
     fn a_budget_says_what_was_found_and_expected() {
         let cases = [
-            ((0.95, true, Some((12, 0.96875))), "estimated success 0.9688 (95 % interval 0.9498 to 0.9807 of 512 fixed trials), at least the 0.95"),
+            (
+                (0.95, true, Some((12, 0.96875))),
+                "estimated success 0.9688 (95 % interval 0.9498 to 0.9807 of 512 fixed trials), at least the 0.95",
+            ),
             ((0.95, false, Some((12, 0.5))), "the best estimated success over these paths is 0.5000 with 12 hops"),
             ((0.95, false, Some((1, 0.5))), "with 1 hop ("),
             ((0.5, false, None), "no path could be flown in trials, expected an estimated success of at least 0.5"),

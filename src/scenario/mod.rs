@@ -3,6 +3,7 @@
 mod backslashes;
 mod budget;
 mod catalogue;
+mod derating;
 mod document;
 mod entries;
 mod file_kind;

@@ -13,8 +13,8 @@ use crate::{
     quantity::{Angle, AngleInterval, MapPoint},
     terrain::{LonLat, MapPlace, NoDataRule},
     world::{
-        Body, ClearanceRule, CommandSteps, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper, KNOWN_BODIES,
-        RestSlope, SurfaceProperties,
+        Body, ClearanceRule, CommandSteps, Derating, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper,
+        KNOWN_BODIES, RestSlope, SurfaceProperties,
     },
 };
 
@@ -120,6 +120,8 @@ pub struct Scenario {
     pub risk_extra_hops_max: Option<u32>,
     /// What a path has to give at least.
     pub budget: Budget,
+    /// Shares of the limits that planning may use.
+    pub derating: Derating,
     /// The errors of the trials, if the scenario has `[uncertainty]`.
     pub uncertainty: Option<UncertaintyKeys>,
     /// Title of the picture.
@@ -150,6 +152,7 @@ impl Scenario {
         let terrain = terrain(&mut entries);
         let via = via(&mut entries, terrain.as_ref());
         let [friction_raster, keep_out] = overlays(&mut entries, &surface, terrain.as_ref());
+        let derating = super::derating::derating(&mut entries, &hopper, &surface);
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
         let budget = super::budget::budget(&entries);
         let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries, uncertainty.as_ref(), budget);
@@ -180,6 +183,7 @@ impl Scenario {
             risk,
             risk_extra_hops_max,
             budget,
+            derating,
             uncertainty,
             title: entries.text("report", "title").map(str::to_owned),
         })

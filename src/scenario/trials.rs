@@ -108,11 +108,7 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
 
 /// How risk weighs, and how many extra hops it may cost. Where errors are given, hops are traded for reliability unless the scenario says
 /// otherwise: a path planned without regard to them stands on the edge of its limits. A budget of success weighs errors of 0 as well.
-pub(super) fn risk(
-    entries: &mut Entries,
-    uncertainty: Option<&UncertaintyKeys>,
-    budget: Budget,
-) -> (ReliabilityUse, Option<u32>) {
+pub(super) fn risk(entries: &mut Entries, uncertainty: Option<&UncertaintyKeys>, budget: Budget) -> (ReliabilityUse, Option<u32>) {
     let is_estimated = uncertainty.is_some() && budget.estimated_success_min.is_some();
     let absent = if is_estimated || has_errors(uncertainty) { ReliabilityUse::Traded } else { ReliabilityUse::Ignored };
     let given = super::read::find(&ReliabilityUse::ALL, ReliabilityUse::name, entries.text("search", "risk"));
@@ -164,6 +160,7 @@ impl Scenario {
                 Policy::OpenLoop => TakeoffScatter::OfLandings,
             },
             over: over.cloned().map(Box::new),
+            whole: None,
         });
         let goal_tolerance_m = self.uncertainty.as_ref().map(|keys| keys.goal_tolerance_m);
         ReliabilityOptions { model, extra_hops_max, goal_tolerance_m }

@@ -12,7 +12,9 @@ use crate::{
     path::{Hop, PathError, generate},
     progress::Progress,
     report::{ConeWidthAnswer, WorstDriftAnswer},
-    uncertainty::experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
+    uncertainty::experiments::{
+        CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift,
+    },
     world::Direction,
 };
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Case, JourneyError, SimulateError, dem_ground::dem_ground, journey::Searched};
+use super::{Case, JourneyError, SimulateError, dem_ground::dem_ground, journey::Searched, pipeline::planned_over};
 use crate::{
     chain::Station,
     graph::{
@@ -55,11 +55,12 @@ pub(super) fn front(
     let (scenario, found) = (&case.scenario, &searched.found);
     let Some(keys) = scenario.uncertainty.filter(|_| matches!(found.outcome, Outcome::Path { .. })) else { return Ok(Vec::new()) };
     let ground = dem_ground(case).map_err(Box::new)?;
-    let journey = FlownJourney { scenario, test, ends, ground: ground.as_ref() };
+    let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
     let mut paths = searched.reliable_paths.clone();
     if scenario.risk != ReliabilityUse::Traded {
         let nodes = NodeSet::new(test.chain(), ends.0, ends.1, found.spacing).map_err(graph::SearchError::from)?;
         let reliability = scenario.reliability_with(scenario.risk_extra_hops_max, ground.as_ref());
+        let reliability = reliability.flown_under(journey.whole.as_ref());
         paths = most_reliable_paths(test, &nodes, &scenario.search, &reliability, progress)?;
         journey.fly_front(found, &mut paths, progress).map_err(Box::new)?;
     }
@@ -80,12 +81,14 @@ pub(super) fn front(
 }
 
 /// A journey whose paths are flown in trials.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct FlownJourney<'a> {
     /// The scenario, with its errors.
     pub(super) scenario: &'a Scenario,
-    /// The hop test over its chain.
+    /// The hop test over its chain, under the limits that planning may use.
     pub(super) test: &'a HopTest,
+    /// The same under the whole limits, where they are others.
+    pub(super) whole: Option<HopTest>,
     /// Start and goal.
     pub(super) ends: (Station, Station),
     /// The whole DEM, if the chain was sliced from one.
@@ -97,15 +100,19 @@ impl FlownJourney<'_> {
     pub(super) fn simulation(&self, path: &HopPath, to_go: Option<&Arc<CostToGo>>) -> Result<Simulation, SimulateError> {
         let (start, goal) = self.ends;
         let mission = match self.ground {
-            None => Mission::along_chain(self.test.clone(), path.clone(), start, goal),
+            None => Mission::along_chain(self.whole.as_ref().unwrap_or(self.test).clone(), path.clone(), start, goal),
             Some(ground) => {
                 let chain = self.test.chain();
                 Mission::over_dem(ground.clone(), path.clone(), chain.contact_point(&start), chain.contact_point(&goal))
             }
         };
-        let mission = match to_go {
-            Some(to_go) => mission.with_replanning(self.test.clone(), Arc::clone(to_go)),
-            None => mission,
+        let mission = match (to_go, self.ground) {
+            (None, _) => mission,
+            (Some(to_go), Some(ground)) if self.whole.is_some() => {
+                let planned = planned_over(ground, self.scenario);
+                mission.with_replanning(self.test.clone(), Arc::clone(to_go)).planned_over(planned)
+            }
+            (Some(to_go), _) => mission.with_replanning(self.test.clone(), Arc::clone(to_go)),
         };
         Ok(Simulation::new(&mission, self.scenario.uncertainty.unwrap_or_default().errors)?)
     }
@@ -124,7 +131,8 @@ impl FlownJourney<'_> {
     fn costs_with_all_hops(&self, found: &graph::Answer, progress: &dyn Progress) -> Result<CostToGo, SimulateError> {
         let nodes = NodeSet::new(self.test.chain(), self.ends.0, self.ends.1, found.spacing)?;
         let options = &self.scenario.search;
-        let Some(mut reliability) = self.scenario.reliability(self.ground) else {
+        let reliability = self.scenario.reliability(self.ground);
+        let Some(mut reliability) = reliability.map(|reliability| reliability.flown_under(self.whole.as_ref())) else {
             return Ok(CostToGo::of(self.test, nodes, options, progress)?);
         };
         if let RiskModel::Flown { takeoffs, .. } = &mut reliability.model {

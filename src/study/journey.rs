@@ -1,6 +1,6 @@
 //! The search for a journey, and the proof where one is requested: what check, plan, compare and require share.
 
-use super::{Case, CaseError, Prepared, SimulateError, dem_ground::dem_ground, front::FlownJourney};
+use super::{Case, CaseError, SimulateError, dem_ground::dem_ground, front::FlownJourney};
 use crate::{
     chain::Station,
     graph::{
@@ -11,7 +11,7 @@ use crate::{
     hop::HopTest,
     path::{HopPath, PathError, TooManyHops},
     progress::Progress,
-    report::{CheckAnswer, SuccessBudgetRecord},
+    report::{CheckAnswer, DeratingRecord, SuccessBudgetRecord},
     scenario::Scenario,
 };
 
@@ -102,14 +102,15 @@ impl Searched {
         &self,
         test: &HopTest,
         (start, goal): (Station, Station),
-        (prepared, options): (&Prepared, &graph::SearchOptions),
+        case: &Case,
     ) -> (CheckAnswer, Result<Option<HopPath>, TooManyHops>) {
+        let (prepared, options) = (case.planning(), &case.scenario.search);
         let answer = CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &self.found, options.effort);
         let answer = match &self.proof {
             None => answer,
             Some((bounds, budget)) => answer.with_bounds(bounds, *budget),
         };
-        let answer = answer.with_success_budget(self.success);
+        let answer = answer.with_success_budget(self.success).with_derating(DeratingRecord::of(&case.scenario.derating));
         let Outcome::Path { legs, .. } = &self.found.outcome else { return (answer, Ok(None)) };
         match prepared.path(test, legs, options) {
             Ok(path) => (answer.with_path(Some(&path)), Ok(Some(path))),
@@ -138,8 +139,9 @@ pub(super) fn search(
     }
     let flown = scenario.uncertainty.is_some();
     let ground = if flown { dem_ground(case).map_err(Box::new)? } else { None };
-    let journey = FlownJourney { scenario, test, ends, ground: ground.as_ref() };
-    let Some(reliability) = scenario.reliability(ground.as_ref()) else {
+    let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
+    let reliability = scenario.reliability(ground.as_ref());
+    let Some(reliability) = reliability.map(|reliability| reliability.flown_under(journey.whole.as_ref())) else {
         return Ok(Searched::of(graph::search(test, ends.0, ends.1, options, progress)?));
     };
     let (mut found, mut front) = search_most_reliable(test, ends.0, ends.1, options, &reliability, progress)?;

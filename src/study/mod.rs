@@ -34,6 +34,7 @@ mod pipeline;
 mod plan;
 mod record;
 mod require;
+mod require_success;
 mod schema;
 mod sense;
 mod simulate;

@@ -2,15 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::{
-    Case, CaseError, Commands, Front, FrontWithoutErrors, JourneyError, Proof,
-    front::front,
-    journey::Searched,
-};
+use super::{Case, CaseError, Commands, Front, FrontWithoutErrors, JourneyError, Proof, front::front, journey::Searched};
 #[cfg(feature = "plot")]
-use crate::figure::{
-    Caption, FigureError, FigureInput, FigureTitle, FrontFigure, FrontPoint, Picture, Success, draw, draw_front,
-};
+use crate::figure::{Caption, FigureError, FigureInput, FigureTitle, FrontFigure, FrontPoint, Picture, Success, draw, draw_front};
 use crate::{
     chain::Station,
     graph,
@@ -118,7 +112,7 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
     }
     let (test, ends) = (case.hop_test(), case.ends()?);
     let searched = Searched::new(&test, ends, &case, options.proof, progress)?;
-    let (check, path) = searched.answer_with_path(&test, ends, (&case.prepared, &case.scenario.search));
+    let (check, path) = searched.answer_with_path(&test, ends, &case);
     let path = path?;
     if let Some(path) = path.as_ref().filter(|_| options.verify) {
         Defect::unless_passed(&case.prepared.execute(path, ends))?;
@@ -196,7 +190,9 @@ impl Planned {
         let mut line = vec![format!("from x = {:.3} m to x = {:.3} m", self.ends.0.point.x_m, self.ends.1.point.x_m)];
         line.extend(scenario.body.name.clone());
         line.extend(SpeedLimit::stated(&scenario.hopper).map(|limit| limit.to_string()));
-        line.extend(front.first().map(|first| format!("each path estimated by {} fixed trials, policy {}", first.trials, first.policy)));
+        line.extend(
+            front.first().map(|first| format!("each path estimated by {} fixed trials, policy {}", first.trials, first.policy)),
+        );
         let point = |row: &FrontRecord| {
             let [low, high] = row.success_estimated_ci95;
             FrontPoint { hops: row.hops, success: Success { rate: row.success_estimated, low, high }, planned: row.planned }

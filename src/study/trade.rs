@@ -1,10 +1,10 @@
 //! Varies one or two keys of a scenario over a grid, with the answer in every cell.
 
-use std::{collections::BTreeMap, path::Path, sync::Arc};
+use std::{collections::BTreeMap, ops::ControlFlow, path::Path};
 
 use rayon::prelude::*;
 
-use super::{PipelineError, Prepared, Survey, ask_the_same, physics::escape_warnings};
+use super::{Case, CaseError, Commands, JourneyError, PipelineError, Survey, ask_the_same, journey, physics::escape_warnings};
 use crate::{
     chain::Station,
     graph::{
@@ -13,7 +13,7 @@ use crate::{
         search_one,
     },
     hop::HopTest,
-    progress::{Cancelled, Detail, Meter, Progress, Stage},
+    progress::{Cancelled, Detail, Meter, Progress, Stage, Step},
     report::{EffortRecord, SweptKeyRecord, TotalsRecord, TradeAnswer, TradeRow},
     scenario::{Entries, Key, Kind, Scenario, ScenarioProblem, fits, nearest_key},
 };
@@ -136,6 +136,18 @@ pub enum CellError {
     /// The search.
     #[error(transparent)]
     Search(#[from] SearchError),
+    /// The estimate of a success.
+    #[error(transparent)]
+    Journey(#[from] JourneyError),
+}
+
+impl From<CaseError> for CellError {
+    fn from(error: CaseError) -> Self {
+        match error {
+            CaseError::Prepare(error) => error.into(),
+            other => Self::Journey(other.into()),
+        }
+    }
 }
 
 /// The answers of all cells.
@@ -285,6 +297,15 @@ fn verdict_of(
     Ok((Varied { verdict: bounds.verdict(), hops: bounds.upper(), lower_bound: Some(bounds.lower) }, bounds.answer))
 }
 
+/// Parts of the work of a cell, which are not reported, and end with it.
+struct Unreported<'m, 'p>(&'m Meter<'p>);
+
+impl Progress for Unreported<'_, '_> {
+    fn report(&self, _: &Step) -> ControlFlow<()> {
+        if self.0.check().is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
 /// A scenario, its terrain and its swept keys.
 #[derive(Clone, Debug)]
 pub struct Trade<'a> {
@@ -362,26 +383,35 @@ impl<'a> Trade<'a> {
         Scenario::new(varied(self.entries, self.swept, values, "varied")).map_err(|problems| CellError::Scenario { problems })
     }
 
-    /// The scenario of a cell and its chain.
-    fn prepared(&self, values: &[f64]) -> Result<(Scenario, Prepared), CellError> {
+    /// The case of a cell.
+    fn case(&self, values: &[f64]) -> Result<Case, CellError> {
         let scenario = self.scenario(values)?;
         // The one number that changes how the terrain is read.
         let rereads = self.swept.iter().any(|v| (v.key.table, v.key.name) == ("terrain", "mesh_scale"));
-        let prepared = match scenario.terrain.as_ref().filter(|_| rereads) {
-            Some(source) => Survey::of(&scenario, source, self.base).and_then(|survey| survey.prepare(&scenario)),
-            None => self.survey.prepare(&scenario),
-        };
-        Ok((scenario, prepared?))
+        let reread = scenario.terrain.as_ref().filter(|_| rereads).map(|source| Survey::of(&scenario, source, self.base));
+        let reread = reread.transpose()?;
+        Ok(Case::over(reread.as_ref().unwrap_or(self.survey), scenario, self.base, Commands::OfTheMachine)?)
     }
 
     /// One cell.
     fn row(&self, values: &[f64], proof_budget_cells: Option<usize>, meter: &Meter<'_>) -> Result<TradeRow, CellError> {
-        let (scenario, prepared) = self.prepared(values)?;
+        let case = self.case(values)?;
+        let Case { scenario, prepared, .. } = &case;
         let ends = prepared.start.zip(prepared.goal).ok_or(CellError::NoEnds)?;
-        let above_escape = !escape_warnings(&scenario, Some(prepared.chain.geometry())).is_empty();
+        let above_escape = !escape_warnings(scenario, Some(prepared.chain.geometry())).is_empty();
         let distance_m = (ends.1.point.x_m - ends.0.point.x_m).abs();
-        let test = HopTest::new(Arc::clone(&prepared.chain));
-        let (answer, found) = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter)?;
+        let test = case.hop_test();
+        let (mut answer, mut found) = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter)?;
+        let mut success_budget = None;
+        if scenario.budget.estimated_success_min.is_some() && answer.hops.is_some() {
+            let searched = journey::search(&test, ends, &case, &Unreported(meter))?;
+            (found, success_budget) = (searched.found, searched.success);
+            answer.hops = found.hops().filter(|_| success_budget.is_none_or(|budget| budget.met));
+            if answer.hops.is_none() {
+                answer.verdict = ProofVerdict::Open;
+            }
+        }
+        let has_path = answer.hops.is_some();
         let effort = scenario.search.effort;
         Ok(TradeRow {
             values: self.named(values),
@@ -395,24 +425,24 @@ impl<'a> Trade<'a> {
                 let hops = hops.max(1) as f64;
                 distance_m / hops > 0.01 * radius_m
             }),
-            totals: self.totals(&scenario, &prepared, &found),
+            totals: if has_path { self.totals(&case, &found) } else { None },
             effort: match &found.outcome {
-                Outcome::Path { cost, .. } => Some(EffortRecord::new(effort, cost.effort())),
-                Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
+                Outcome::Path { cost, .. } if has_path => Some(EffortRecord::new(effort, cost.effort())),
+                Outcome::Path { .. } | Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
             },
+            success_budget,
             error: None,
         })
     }
 
     /// The totals of the path found, for exact commands; `None` without one, or if it has too many hops to list.
-    fn totals(&self, scenario: &Scenario, prepared: &Prepared, found: &Answer) -> Option<TotalsRecord> {
+    fn totals(&self, case: &Case, found: &Answer) -> Option<TotalsRecord> {
         let Outcome::Path { legs, .. } = &found.outcome else { return None };
-        let hopper = scenario.hopper.with_any_command();
-        let is_exact = hopper.limits() == scenario.hopper.limits();
-        let exact = || self.survey.prepare(&Scenario { hopper, ..scenario.clone() }).ok();
+        let is_exact = case.scenario.hopper.with_any_command().limits() == case.scenario.hopper.limits();
+        let exact = || Case::over(self.survey, case.scenario.clone(), self.base, Commands::Exact).ok();
         let exact = if is_exact { None } else { Some(exact()?) };
-        let prepared = exact.as_ref().unwrap_or(prepared);
-        let path = prepared.path(&HopTest::new(Arc::clone(&prepared.chain)), legs, &scenario.search).ok()?;
+        let case = exact.as_ref().unwrap_or(case);
+        let path = case.planning().path(&case.hop_test(), legs, &case.scenario.search).ok()?;
         Some(TotalsRecord::from(&path.totals))
     }
 
@@ -430,7 +460,7 @@ impl<'a> Trade<'a> {
                 };
                 meter.report(Detail::None)?;
                 // What is refused for some values depends on them, or no cell has an answer.
-                let Ok((scenario, prepared)) = self.prepared(&values) else { return Ok(()) };
+                let Ok(Case { scenario, prepared, .. }) = self.case(&values) else { return Ok(()) };
                 if before.as_ref().is_some_and(|(s, p)| !ask_the_same((s, p), (&scenario, &prepared))) {
                     return Ok(());
                 }

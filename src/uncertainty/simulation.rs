@@ -143,8 +143,14 @@ impl Simulation {
     pub fn estimated_success(&self, options: &TrialOptions, progress: &dyn Progress) -> Result<f64, SimulationError> {
         /// Apart from the seeds that users give.
         const SEED: u64 = 0x6368_7461;
-        let fixed =
-            TrialOptions { trials: ESTIMATE_TRIALS, seed: SEED, first_trial: 0, until_half_width: None, trajectories: 0, ..*options };
+        let fixed = TrialOptions {
+            trials: ESTIMATE_TRIALS,
+            seed: SEED,
+            first_trial: 0,
+            until_half_width: None,
+            trajectories: 0,
+            ..*options
+        };
         Ok(self.run(&fixed, &mut (), progress)?.success.rate)
     }
 
@@ -315,7 +321,7 @@ fn chain_plan(mission: &Mission) -> Result<Plan<ChainPosition>, SimulationError>
         Ok(PlannedHop { from, command: command(hop, heading_of(hop.direction), aim) })
     });
     let hops = planned.collect::<Result<_, SimulationError>>()?;
-    let replan = mission.replanning.as_ref().map(|Replanning { test, to_go }| {
+    let replan = mission.replanning.as_ref().map(|Replanning { test, to_go, .. }| {
         let replan = ChainReplan { test: test.clone(), to_go: Arc::clone(to_go) };
         Box::new(replan) as _
     });
@@ -344,11 +350,15 @@ fn map_plan(mission: &Mission, ground: &DemGround) -> Result<Plan<MapPosition>, 
         Ok(position)
     };
     let (start, goal) = (on_ground(&mission.start, MissionPoint::Start)?, on_ground(&mission.goal, MissionPoint::Goal)?);
-    let replan = mission.replanning.as_ref().map(|Replanning { test, to_go }| {
+    let replan = mission.replanning.as_ref().map(|Replanning { test, to_go, over }| {
         let stations = to_go.nodes().stations().iter();
         let node = |station| on_ground(&test.chain().contact_point(station), MissionPoint::Node);
         let nodes = stations.map(node).collect::<Result<_, _>>()?;
-        Ok::<_, SimulationError>(Box::new(MapReplan { ground: ground.clone(), to_go: Arc::clone(to_go), nodes }) as _)
+        Ok::<_, SimulationError>(Box::new(MapReplan {
+            ground: over.as_ref().unwrap_or(ground).clone(),
+            to_go: Arc::clone(to_go),
+            nodes,
+        }) as _)
     });
     Ok(Plan { start, goal: goal.at, hops, replan: replan.transpose()? })
 }

@@ -11,7 +11,7 @@ use chta::{
     report::DocumentKind,
     scenario::{Entries, Scenario},
     study::{
-        Case, CaseError, CheckError, Commands, ExperimentError, HopError, JourneyEnd, PlanOptions, Proof, RequireError,
+        Case, CaseError, CheckError, Commands, Front, HopError, JourneyEnd, PlanError, PlanOptions, Proof, RequireError,
         Requirement, SimulateOptions, SweptKey, Trade, Trials, Variation, check, check_pairs, compare, experiment, hop, plan,
         require, simulate, trade,
     },
@@ -213,13 +213,14 @@ fn fronts_answer_as_the_command_and_improve_strictly() {
         let chosen: Vec<_> = front.iter().filter(|row| row.planned).collect();
         assert_eq!(chosen.len(), usize::from(is_on_it), "{settings:?}: {front:?}");
         for row in chosen {
-            assert_eq!((Some(row.hops), Some(row.totals)), (planned.answer.check.hops, planned.answer.totals.map(|totals| totals)));
+            assert_eq!((Some(row.hops), Some(row.totals)), (planned.answer.check.hops, planned.answer.totals));
         }
         assert_eq!(planned.front_picture().unwrap().unwrap().to_svg().unwrap().matches("estimated success").count(), 1);
     }
     let errorless = plan(&case("simple", &[], Commands::OfTheMachine), options, &()).unwrap_err();
     assert!(matches!(errorless, PlanError::Front(_)) && errorless.to_string().contains("[uncertainty]"), "{errorless}");
-    let wall = plan(&case("wall", &["uncertainty.takeoff_speed_sigma_fraction=0.1"], Commands::OfTheMachine), options, &()).unwrap();
+    let wall =
+        plan(&case("wall", &["uncertainty.takeoff_speed_sigma_fraction=0.1"], Commands::OfTheMachine), options, &()).unwrap();
     assert_eq!((wall.is_traversable(), wall.answer.front.map(|front| front.len())), (false, Some(0)));
 }
 

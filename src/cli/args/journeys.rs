@@ -196,6 +196,10 @@ pub(crate) struct RequireArgs {
     /// Greatest value to try, in the key's unit [default: by key]
     #[arg(long, value_name = "V", allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
+    /// Success wanted, 0 to 1: the least value whose success, estimated by 512 fixed trials, is at least P; also keys of
+    /// `[uncertainty]` and `[derating]` can then be varied [default: the scenario's `budget.estimated_success_min`, else any]
+    #[arg(long, value_name = "P", allow_negative_numbers = true)]
+    pub(crate) success_min: Option<f64>,
     /// How close to bring the two values, as a fraction of them
     #[arg(long, value_name = "SHARE", default_value_t = 0.001, allow_negative_numbers = true)]
     pub(crate) resolution: f64,
@@ -271,6 +275,13 @@ pub(crate) struct CompareArgs {
     /// No warnings and no progress on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+impl RequireArgs {
+    /// The scenario key set by an option of its own.
+    pub(crate) fn own_keys(&self) -> Vec<OwnKey<'static>> {
+        self.success_min.map(|least| ("--success-min", "budget", "estimated_success_min", least.into())).into_iter().collect()
+    }
 }
 
 impl PlanArgs {

@@ -25,7 +25,8 @@ const WANTED_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.35 };
 
 /// Draws the panel below a height; returns where it ends, and the legend.
 pub(super) fn draw(sheet: &mut Sheet, figure: &FrontFigure, top_mm: f64) -> (f64, Vec<(Swatch, String)>) {
-    let is_drawable = |point: &&FrontPoint| [point.success.low, point.success.rate, point.success.high].iter().all(|r| r.is_finite());
+    let is_drawable =
+        |point: &&FrontPoint| [point.success.low, point.success.rate, point.success.high].iter().all(|r| r.is_finite());
     let points: Vec<FrontPoint> = figure.points.iter().filter(is_drawable).copied().collect();
     let wanted = figure.success_min.map(|success| 100.0 * success);
     let plot = Plot::new(range(&points, wanted), top_mm, HIGH_MM);
@@ -109,7 +110,10 @@ fn entries(points: &[FrontPoint], success_min: Option<f64>) -> Vec<(Swatch, Stri
         found.push((Swatch::Line(INTERVAL_PEN), "95 % interval of the estimate".to_owned()));
     }
     if let Some(success) = success_min {
-        found.push((Swatch::Dashed(WANTED_PEN, 2.2, 1.0), format!("least success wanted: {}", crate::quantity::format_number(success))));
+        found.push((
+            Swatch::Dashed(WANTED_PEN, 2.2, 1.0),
+            format!("least success wanted: {}", crate::quantity::format_number(success)),
+        ));
     }
     found
 }

@@ -15,8 +15,8 @@ mod outcomes;
 mod tests;
 
 pub use data::{
-    ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, FrontFigure, FrontPoint, LandingBoxes, LandingErrorFigure,
-    OutcomeBars, SimulationFigure, Success,
+    ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, FrontFigure, FrontPoint,
+    LandingBoxes, LandingErrorFigure, OutcomeBars, SimulationFigure, Success,
 };
 
 use super::{

@@ -33,6 +33,8 @@ pub enum RiskModel {
         takeoffs: TakeoffScatter,
         /// The DEM over which they are flown; `None`: the chain, whose ground ends where it ends.
         over: Option<Box<DemGround>>,
+        /// The same chain under the limits that are flown, where planning may use only shares of them.
+        whole: Option<HopTest>,
     },
     /// The margin of the flown angle to either end of its feasible set, for an angle with one degree of standard deviation.
     Slack,
@@ -116,12 +118,12 @@ impl Judge {
     pub(super) fn new(test: &HopTest, options: &SearchOptions, model: &RiskModel, tolerance_m: Option<f64>) -> Self {
         let (trials, takeoffs, position_sigma_m) = match model {
             RiskModel::Slack => (Trials::Slack, TakeoffScatter::OfPosition, 0.0),
-            RiskModel::Flown { errors, takeoffs, over } => {
+            RiskModel::Flown { errors, takeoffs, over, whole } => {
                 let trials = match over {
                     None => {
                         // Along a chain there is one plane of travel.
                         let errors = Uncertainty { heading_sigma: Angle::from_radians(0.0), ..*errors };
-                        let ground = ChainGround::new(test.clone());
+                        let ground = ChainGround::new(whole.as_ref().unwrap_or(test).clone());
                         Trials::Chain(HopTrials::new(&ground, &errors, test.chain().geometry().vertices().len()))
                     }
                     Some(ground) => Trials::Map(Box::new((HopTrials::new(ground.as_ref(), errors, 1), (**ground).clone()))),

@@ -37,7 +37,7 @@ impl<'a> Flyer<'a> {
 
     fn journey(&self) -> FlownJourney<'_> {
         let Planned { case, test, ends, .. } = self.planned;
-        FlownJourney { scenario: &case.scenario, test, ends: *ends, ground: self.ground.as_ref() }
+        FlownJourney { scenario: &case.scenario, test, whole: case.whole_test(), ends: *ends, ground: self.ground.as_ref() }
     }
 
     /// The whole raster with its overlays, if the terrain is one.
