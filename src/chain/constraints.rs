@@ -5,7 +5,7 @@ use std::fmt;
 use crate::{
     ballistics::ContactLimits,
     quantity::{Angle, AngleInterval, SlopeInterval},
-    world::{Contact, Direction, FrictionCone, Limit},
+    world::{Contact, Derating, Direction, FrictionCone, Limit},
 };
 
 /// The limits of one contact: directions of travel and a greatest speed.
@@ -135,6 +135,13 @@ impl LineConstraints {
     #[must_use]
     pub fn capped(self, takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64) -> Self {
         Self { takeoff: self.takeoff.capped(takeoff_speed_max_m_s), landing: self.landing.capped(landing_speed_max_m_s) }
+    }
+
+    /// The same angles, with shares of the speeds.
+    #[must_use]
+    pub fn derated(self, derating: &Derating) -> Self {
+        let share = |rule: ContactRule, share: f64| ContactRule { speed_max_m_s: share * rule.speed_max_m_s, ..rule };
+        Self { takeoff: share(self.takeoff, derating.takeoff_speed), landing: share(self.landing, derating.landing_speed) }
     }
 
     /// The rule of one contact.

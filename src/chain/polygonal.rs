@@ -6,7 +6,7 @@ use super::{GroundForm, OffChain, SegmentGround, Site, Station};
 use crate::{
     quantity::{ChainPoint, MapPoint, SegmentId, VertexId},
     terrain::{Profile, ProfilePoint},
-    world::{Direction, FrictionCone},
+    world::{Derating, Direction, FrictionCone},
 };
 
 /// A validated polygonal chain: at least two finite vertices, x strictly increasing, and a ground for every segment.
@@ -234,6 +234,22 @@ impl PolygonalChain {
         }
         self.bends = bends;
         Ok(self)
+    }
+
+    /// The same chain with shares of the speeds and frictions that its segments state.
+    #[must_use]
+    pub fn derated(mut self, derating: &Derating) -> Self {
+        for ground in &mut self.grounds {
+            match &mut ground.form {
+                GroundForm::Surface { friction, .. } => *friction = friction.map(|cone| derating.cone(cone)),
+                GroundForm::Explicit { forward, reverse } => {
+                    for line in [forward, reverse] {
+                        *line = line.map(|line| line.derated(derating));
+                    }
+                }
+            }
+        }
+        self
     }
 
     /// The vertices where the plane of travel turns, in ascending order.

@@ -58,6 +58,21 @@ const OF_RISK: [&str; 13] = [
     "goal_tolerance_m",
 ];
 
+/// What a scenario weighs in the choice of a path.
+#[derive(Clone, Copy, Debug, Default)]
+struct Weighs {
+    /// Risk.
+    risk: bool,
+    /// A budget of success.
+    success: bool,
+}
+
+impl Weighs {
+    fn of(scenario: &Scenario) -> Self {
+        Self { risk: scenario.risk != ReliabilityUse::Ignored, success: scenario.budget.estimated_success_min.is_some() }
+    }
+}
+
 impl Purpose {
     /// Every purpose, with all that it can compute.
     const ALL: [Self; 10] = [
@@ -97,11 +112,13 @@ impl Purpose {
         }
     }
 
-    /// Whether its answer can depend on a key, where the choice of a path weighs risk or does not.
-    fn uses(self, key: &Key, weighs_risk: bool) -> bool {
+    /// Whether its answer can depend on a key, where the choice of a path weighs risk or does not, and estimates a budget of success or does
+    /// not.
+    fn uses(self, key: &Key, Weighs { risk: weighs_risk, success }: Weighs) -> bool {
         let on_a_dem = matches!(self, Self::Fan | Self::Map { .. });
         let flies = matches!(self, Self::Run | Self::Simulate | Self::Map { trials: true, .. });
         let by_risk = matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Compare);
+        let by_success = success && matches!(self, Self::Require | Self::Trade);
         let totals = matches!(self, Self::Plan | Self::Run | Self::Require | Self::Compare | Self::Map { goals: true, .. });
         match (key.table, key.name) {
             (
@@ -126,9 +143,13 @@ impl Purpose {
             ("terrain", name) => !(on_a_dem && gives_way_to_a_dem(name)),
             ("search", "points_per_segment" | "node_spacing_max_m") => !matches!(self, Self::Hop | Self::Map { .. }),
             ("search", "effort") => !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { effort: false, .. }),
+            ("search", "takeoff_angle" | "split" | "risk" | "risk_extra_hops_max") if by_success => true,
             ("search", "takeoff_angle") => !matches!(self, Self::Trade | Self::Fan | Self::Map { goals: false, effort: false, .. }),
             ("search", "split") => !on_a_dem && !matches!(self, Self::Hop | Self::Trade),
             ("search", "risk" | "risk_extra_hops_max") => by_risk,
+            ("budget", _) => by_risk || matches!(self, Self::Require | Self::Trade),
+            ("derating", _) => !matches!(self, Self::Map { .. }),
+            ("uncertainty", name) if by_success => !matches!(name, "trials" | "seed"),
             ("uncertainty", name) => flies || (by_risk && weighs_risk && OF_RISK.contains(&name)),
             _ => true,
         }
@@ -152,7 +173,7 @@ impl Purpose {
     /// Warnings about keys that were given and that this purpose does not use: those of the command line, and a risk that a scenario
     /// wants weighed. A scenario serves many commands, so other keys of a file are not reported.
     pub(crate) fn unused(self, entries: &Entries, scenario: &Scenario) -> Vec<String> {
-        let weighs_risk = scenario.risk != ReliabilityUse::Ignored;
+        let weighs = Weighs::of(scenario);
         let mut warnings = Vec::new();
         if !scenario.hopper.limits().steps.is_continuous() && !self.flies_commands() {
             let command = self.command();
@@ -176,17 +197,25 @@ impl Purpose {
                 && self.counts_propellant()
                 && key.table == "hopper"
                 && matches!(key.name, "mass_kg" | "isp_s" | "hop_delta_v_overhead_m_s");
-            if self.uses(key, weighs_risk) || of_propellant {
+            if self.uses(key, weighs) || of_propellant {
                 continue;
             }
-            let wants_risk = weighs_risk && (key.table, key.name) == ("search", "risk") && self != Self::Hop;
+            let wants_risk = weighs.risk && (key.table, key.name) == ("search", "risk") && self != Self::Hop;
             // A limit that the file states and this answer does not keep: silence would be a promise.
             if (key.table, key.name) == ("hopper", "propellant_max_kg") && self != Self::Hop {
-                let users = Self::users(key, weighs_risk, self);
+                let users = Self::users(key, weighs, self);
                 warnings.push(format!(
                     "hopper.propellant_max_kg is not kept by this answer of chta {}, which counts hops and no propellant{users}",
                     self.command()
                 ));
+                continue;
+            }
+            // So is a least success that the file wants, and a reserve of the limits.
+            let is_default = key.table == "derating" && scenario.derating.is_none();
+            if matches!(key.table, "budget" | "derating") && self != Self::Hop && !is_default {
+                let users = Self::users(key, weighs, self);
+                let what = if key.table == "budget" { "counts hops and estimates no success" } else { "uses the whole limits" };
+                warnings.push(format!("{} is not kept by this answer of chta {}, which {what}{users}", key.path(), self.command()));
                 continue;
             }
             let said = match place {
@@ -194,7 +223,7 @@ impl Purpose {
                 Place::File(_) | Place::Nowhere if wants_risk => format!("{} = \"{}\"", key.path(), scenario.risk.name()),
                 Place::File(_) | Place::Nowhere => continue,
             };
-            let (command, users) = (self.command(), Self::users(key, weighs_risk, self));
+            let (command, users) = (self.command(), Self::users(key, weighs, self));
             warnings.push(format!("{said} has no effect on this answer of chta {command}{users}"));
         }
         warnings
@@ -207,8 +236,8 @@ impl Purpose {
     }
 
     /// The commands that use a key, for the end of a warning.
-    fn users(key: &Key, weighs_risk: bool, called: Self) -> String {
-        let users: Vec<&str> = Self::ALL.into_iter().filter(|purpose| purpose.uses(key, weighs_risk)).map(Self::command).collect();
+    fn users(key: &Key, weighs: Weighs, called: Self) -> String {
+        let users: Vec<&str> = Self::ALL.into_iter().filter(|purpose| purpose.uses(key, weighs)).map(Self::command).collect();
         let own = users.contains(&called.command());
         match (own, called) {
             (true, Self::Map { .. }) => ": it is used with --goal, --effort or --simulate".to_owned(),
@@ -227,7 +256,7 @@ mod tests {
     #[test]
     fn every_key_is_used_by_a_command_and_every_command_exists() {
         for key in &CATALOGUE {
-            let users: Vec<_> = Purpose::ALL.into_iter().filter(|purpose| purpose.uses(key, false)).collect();
+            let users: Vec<_> = Purpose::ALL.into_iter().filter(|purpose| purpose.uses(key, Weighs::default())).collect();
             assert!(!users.is_empty(), "{} is used by no command", key.path());
         }
         for purpose in Purpose::ALL {

@@ -48,6 +48,7 @@ impl From<PlanError> for Failure {
         match error {
             PlanError::Journey(error) => error.into(),
             PlanError::TooManyHops(error) => Self::of(&error),
+            PlanError::Front(error) => Self::message(format!("--front: {error}")),
             other => Self::of(&other),
         }
     }
@@ -80,9 +81,6 @@ impl From<ExperimentError> for Failure {
         match error {
             ExperimentError::Trials(error) => error.into(),
             ExperimentError::NoUncertainty { .. } | ExperimentError::NoErrors => Self::message(format!("--experiment: {error}")),
-            ExperimentError::Replans => {
-                Self::message(format!("--experiment: {}: add --policy open-loop", ExperimentError::REPLANS))
-            }
             other => Self::of(&other),
         }
     }
@@ -99,6 +97,8 @@ impl From<RequireError> for Failure {
         match error {
             RequireError::Case(error) => error.into(),
             RequireError::Search(error) => Self::of(&error),
+            RequireError::Journey(error) => error.into(),
+            RequireError::NoSuccessWanted { .. } => Self::message(format!("--vary {error}, or --success-min 0.9")),
             RequireError::Range(problem) => Self::message(format!("--from and --to: {problem}")),
             RequireError::Resolution { .. } => Self::message(format!("--{error}")),
             other => Self::message(format!("--vary {other}")),

@@ -36,7 +36,7 @@ pub use nodes::{NodeSet, NodesError, PointSpacing};
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
 pub use reliability::{
-    ReliabilityOptions, ReliabilityUse, ReliablePath, most_reliable_paths, preferred_path, search_most_reliable,
+    ReliabilityOptions, ReliabilityUse, ReliablePath, most_reliable_paths, path_within_budget, preferred_path, search_most_reliable,
 };
 pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchError, SearchOptions, search, search_pairs};
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};

@@ -57,6 +57,15 @@ pub struct ReliabilityOptions {
 }
 
 impl ReliabilityOptions {
+    /// The same, with hops flown under the limits of this chain where no DEM is flown over; `None`: under those that they are planned with.
+    #[must_use]
+    pub fn flown_under(mut self, limits_of: Option<&HopTest>) -> Self {
+        if let RiskModel::Flown { whole, .. } = &mut self.model {
+            *whole = limits_of.cloned();
+        }
+        self
+    }
+
     /// How many hops more than the fewest a path may take.
     pub fn extra_hops(&self, fewest: u64) -> u64 {
         self.extra_hops_max.map_or_else(|| (fewest / 2).max(10), u64::from)
@@ -189,6 +198,31 @@ pub fn preferred_path(front: &[ReliablePath]) -> Option<usize> {
     let last = front.len().checked_sub(1)?;
     let best = front.iter().map(|path| path.success).try_fold(0.0, |best: f64, success| Some(best.max(success?)));
     Some(best.and_then(|best| front.iter().position(|path| path.success >= Some(ENOUGH * best))).unwrap_or(last))
+}
+
+/// Of a front, the path to fly under a budget of success: the fewest hops whose success is at least `success_min`; without any, the one of
+/// the greatest success.
+///
+/// # Returns
+/// An index, and whether the success is enough; `None` where no path has a success.
+///
+/// # Examples
+/// ```
+/// use chta::graph::{ReliablePath, path_within_budget};
+/// let path = |success| ReliablePath { legs: Vec::new(), cost: Default::default(), weight: 1.0, success };
+/// let front = [path(Some(0.4)), path(Some(0.95)), path(Some(0.96))];
+/// assert_eq!(path_within_budget(&front, 0.3), Some((0, true)));
+/// assert_eq!(path_within_budget(&front, 0.96), Some((2, true)));
+/// assert_eq!(path_within_budget(&front, 0.97), Some((2, false)));
+/// assert_eq!(path_within_budget(&[path(None)], 0.0), None);
+/// ```
+pub fn path_within_budget(front: &[ReliablePath], success_min: f64) -> Option<(usize, bool)> {
+    if let Some(enough) = front.iter().position(|path| path.success.is_some_and(|success| success >= success_min)) {
+        return Some((enough, true));
+    }
+    let estimated = front.iter().enumerate().filter_map(|(i, path)| Some((i, path.success?)));
+    let best = estimated.reduce(|best, next| if next.1 > best.1 { next } else { best })?;
+    Some((best.0, false))
 }
 
 /// An edge to a node, with its number of hops.

@@ -214,7 +214,7 @@ mod tests {
         let errors =
             Uncertainty { takeoff_speed_sigma_fraction: 0.01, takeoff_angle_sigma: Angle::from_degrees(0.5), ..Uncertainty::NONE };
         // Without an error of position the first hop scatters as every other.
-        [RiskModel::Flown { errors, takeoffs: TakeoffScatter::OfPosition, over: None }, RiskModel::Slack]
+        [RiskModel::Flown { errors, takeoffs: TakeoffScatter::OfPosition, over: None, whole: None }, RiskModel::Slack]
     }
 
     /// Compares with the most reliable path from each start, found by forward search.

@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    hop_answer::BindingRecord, limit_counts::LimitCounts, proof_record::ProofRecord, propellant_record::PropellantShortage,
+    derating_record::DeratingRecord, hop_answer::BindingRecord, limit_counts::LimitCounts, proof_record::ProofRecord,
+    propellant_record::PropellantShortage, success_record::SuccessBudgetRecord,
 };
 use crate::{
     graph::{
@@ -49,6 +50,12 @@ pub struct CheckAnswer {
     /// If the path takes more propellant than the machine has; the verdict is then `no-path-found`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub propellant_shortage: Option<PropellantShortage>,
+    /// Of a scenario with a budget of success: whether the path has it; if not, the verdict is `no-path-found`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub success_budget: Option<SuccessBudgetRecord>,
+    /// The shares of the limits that this answer, and a proof, is for; absent if it is for the whole limits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derating: Option<DeratingRecord>,
     /// If no commands in the machine's steps fly the path; the verdict is then `no-path-found`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub commands_refusal: Option<String>,
@@ -197,6 +204,8 @@ impl CheckAnswer {
             endpoint_refusals,
             frontier,
             propellant_shortage: None,
+            success_budget: None,
+            derating: None,
             commands_refusal: None,
             landing_miss_max_m: None,
             beside_line: false,
@@ -237,6 +246,21 @@ impl CheckAnswer {
         self.open()
     }
 
+    /// Adds what a budget of success says of the path. A path with less answers no, which nothing proves: paths over other nodes may have
+    /// more.
+    #[must_use]
+    pub fn with_success_budget(mut self, budget: Option<SuccessBudgetRecord>) -> Self {
+        self.success_budget = budget;
+        if budget.is_some_and(|budget| !budget.met) { self.open() } else { self }
+    }
+
+    /// Adds the shares of the limits that it is for.
+    #[must_use]
+    pub const fn with_derating(mut self, derating: Option<DeratingRecord>) -> Self {
+        self.derating = derating;
+        self
+    }
+
     /// The answer no, which nothing proves.
     fn open(mut self) -> Self {
         self.verdict = ProofVerdict::Open;
@@ -248,7 +272,8 @@ impl CheckAnswer {
 
     /// Whether there is a path that the machine can fly.
     pub const fn is_traversable(&self) -> bool {
-        self.hops.is_some() && self.propellant_shortage.is_none() && self.commands_refusal.is_none()
+        let is_reliable = !matches!(self.success_budget, Some(SuccessBudgetRecord { met: false, .. }));
+        self.hops.is_some() && self.propellant_shortage.is_none() && self.commands_refusal.is_none() && is_reliable
     }
 }
 

@@ -6,10 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{ErrorRecord, SensitivityAnswer, text::Sheet};
 use crate::{
     path::Hop,
-    uncertainty::{
-        Policy, Summary,
-        experiments::{DriftExperiment, DriftLanding, DriftReading, Experiment},
-    },
+    uncertainty::experiments::{DriftExperiment, DriftLanding, DriftReading, Experiment},
 };
 
 /// The answer of an experiment.
@@ -20,8 +17,6 @@ pub enum ExperimentAnswer {
     WorstDrift(WorstDriftAnswer),
     /// Of `cone-width`.
     ConeWidth(ConeWidthAnswer),
-    /// Of `risk-trade`.
-    RiskTrade(RiskTradeAnswer),
     /// Of `sensitivity`.
     Sensitivity(SensitivityAnswer),
 }
@@ -257,82 +252,6 @@ impl ConeWidthAnswer {
                 number(width.landing_spread_with_speed_m, 3),
                 number(width.last_landing_with_speed.q50_m, 3),
             ));
-        }
-        sheet.into_text()
-    }
-}
-
-/// The answer of `risk-trade`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct RiskTradeAnswer {
-    /// Trials flown along each path.
-    pub trials: u64,
-    /// The seed of all draws, the same for each path.
-    pub seed: u64,
-    /// The policy flown.
-    pub policy: Policy,
-    /// The path planned without regard to risk, then the most reliable path for each hop count that improves on all smaller ones.
-    pub paths: Vec<RiskTradeRow>,
-}
-
-/// How a path of the trade was planned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TradedPath {
-    /// Without regard to risk.
-    LeastEffort,
-    /// The most reliable path of its number of hops.
-    MostReliable,
-}
-
-impl TradedPath {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::LeastEffort, Self::MostReliable];
-
-    /// The name in results.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::LeastEffort => "least effort",
-            Self::MostReliable => "surest",
-        }
-    }
-}
-
-crate::quantity::by_name!(TradedPath, TradedPath::ALL);
-
-/// One path of the trade.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct RiskTradeRow {
-    /// `least effort` or `surest`.
-    pub path: TradedPath,
-    /// Its hops.
-    pub hops: usize,
-    /// The estimated probability that all hops succeed.
-    pub estimated_success: Option<f64>,
-    /// The share of its trials that reached the goal.
-    pub success_rate: f64,
-    /// Its 95 % interval.
-    pub success_rate_ci95: [f64; 2],
-}
-
-impl RiskTradeRow {
-    /// A path with the results of its trials.
-    pub fn new(path: TradedPath, hops: usize, estimated_success: Option<f64>, summary: &Summary) -> Self {
-        let success = &summary.success;
-        Self { path, hops, estimated_success, success_rate: success.rate, success_rate_ci95: [success.low, success.high] }
-    }
-}
-
-impl RiskTradeAnswer {
-    /// The answer as text.
-    pub fn text(&self) -> String {
-        let mut sheet = Sheet::default();
-        sheet.line(format_args!("hops against success: {} trials each, {}, seed {}", self.trials, self.policy, self.seed));
-        sheet.line(format_args!("{:<14}{:>6}{:>12}{:>12}{:>22}", "path", "hops", "estimate", "flown", "95 % interval"));
-        for row in &self.paths {
-            let estimate = row.estimated_success.map_or("-".to_owned(), |share| format!("{share:.4}"));
-            let [low, high] = row.success_rate_ci95;
-            let interval = format!("{low:.4} to {high:.4}");
-            sheet.line(format_args!("{:<14}{:>6}{estimate:>12}{:>12.4}{interval:>22}", row.path, row.hops, row.success_rate));
         }
         sheet.into_text()
     }

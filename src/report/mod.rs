@@ -3,6 +3,7 @@
 mod advice;
 mod check_answer;
 mod compare_answer;
+mod derating_record;
 mod document;
 mod experiment_answer;
 mod fan_answer;
@@ -24,6 +25,7 @@ mod sigma_margins;
 mod simulate_answer;
 mod size_answer;
 mod stated;
+mod success_record;
 mod text;
 mod trade_answer;
 mod trajectory;
@@ -33,10 +35,9 @@ pub use check_answer::{
     CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, JourneyEnd, MissRecord, PairsAnswer, verdict_of,
 };
 pub use compare_answer::{CompareAnswer, CompareRow, MarginsRecord};
+pub use derating_record::DeratingRecord;
 pub use document::{CrsRecord, Document, DocumentKind, DocumentProblem, InputFile};
-pub use experiment_answer::{
-    ConeWidthAnswer, ConeWidthRecord, DriftRecord, ExperimentAnswer, RiskTradeAnswer, RiskTradeRow, TradedPath, WorstDriftAnswer,
-};
+pub use experiment_answer::{ConeWidthAnswer, ConeWidthRecord, DriftRecord, ExperimentAnswer, WorstDriftAnswer};
 pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::{path_geojson, paths_geojson, slice_geojson};
 pub use hop_answer::{
@@ -54,7 +55,7 @@ pub use plan_answer::{PlanAnswer, plan_text};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
 pub use propellant_record::{PropellantShortage, StoresRecord};
 pub use reliability_record::{ReliablePathRecord, SuccessEstimate, reliable_paths_text};
-pub use require_answer::{RequireAnswer, RequireTry};
+pub use require_answer::{RequireAnswer, RequireSuccessRecord, RequireTry, SuccessTry};
 pub use sensitivity_answer::{SensitivityAnswer, SensitivityRow};
 pub use sigma_margins::SigmaMarginsRecord;
 pub use simulate_answer::{
@@ -62,6 +63,7 @@ pub use simulate_answer::{
     SuccessRequirement, simulate_text,
 };
 pub use size_answer::{SizeAnswer, SizeRecord};
+pub use success_record::{FrontRecord, SuccessBudgetRecord, estimate_ci95, front_text};
 pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};
 pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow, with_unit};
 pub use trajectory::{trajectory_columns, write_trajectory_csv};

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{GapRecord, HopRecord, TotalsRecord};
+use super::{DeratingRecord, GapRecord, HopRecord, SuccessBudgetRecord, TotalsRecord};
 use crate::graph::proof::ProofVerdict;
 
 /// The answer of `chta require`.
@@ -39,6 +39,12 @@ pub struct RequireAnswer {
     pub path: Vec<HopRecord>,
     /// Its totals.
     pub totals: Option<TotalsRecord>,
+    /// Of a scenario with a budget of success: how sure the value is. Nothing is proved then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub success: Option<RequireSuccessRecord>,
+    /// The shares of the limits that this answer is for; absent if it is for the whole limits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derating: Option<DeratingRecord>,
     /// The gap that stops the journey at `unreachable_at`.
     pub gap: Option<GapRecord>,
 }
@@ -54,4 +60,50 @@ pub struct RequireTry {
     pub lower_bound: Option<u64>,
     /// The hops of the best known path.
     pub upper_bound: Option<u64>,
+}
+
+/// The least capable value with enough estimated success, and how sure it is. Success need not grow with a capability: between the values
+/// tried it may be otherwise.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RequireSuccessRecord {
+    /// The success wanted.
+    pub success_min: f64,
+    /// The least capable value tried whose estimate is enough; null if no value tried has it.
+    pub at: Option<SuccessTry>,
+    /// The value before the least capable one whose 95 % interval reaches the success wanted, or that one at the end of the range; null if
+    /// none does.
+    pub uncertain_from: Option<f64>,
+    /// The least capable value whose whole 95 % interval is enough; null if none is.
+    pub uncertain_to: Option<f64>,
+    /// Whether no estimate falls from one value tried to the next more capable one.
+    pub monotone: bool,
+    /// Whether every value tried that is more capable than the one found is enough as well.
+    pub enough_from_there_on: bool,
+    /// Every value tried, from the least capable to the most capable.
+    pub tries: Vec<SuccessTry>,
+}
+
+/// The success at one value.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SuccessTry {
+    /// The value, in the key's unit.
+    pub value: f64,
+    /// The hops of the path: the fewest with enough estimated success, or else those of the best; null without a path.
+    pub hops: Option<u64>,
+    /// The share of 512 fixed trials of that path that reach the goal, with the same draws at every value; 0 without a path.
+    pub success_estimated: f64,
+    /// Its 95 % interval by Wilson's score.
+    pub success_estimated_ci95: [f64; 2],
+}
+
+impl SuccessTry {
+    /// What a budget of success says at a value; `None` without a path.
+    pub fn new(value: f64, found: Option<&SuccessBudgetRecord>) -> Self {
+        Self {
+            value,
+            hops: found.and_then(|found| found.hops),
+            success_estimated: found.and_then(|found| found.success_estimated).unwrap_or(0.0),
+            success_estimated_ci95: found.and_then(|found| found.success_estimated_ci95).unwrap_or([0.0; 2]),
+        }
+    }
 }

@@ -3,11 +3,15 @@
 use std::fmt::Write;
 
 use super::{
-    BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ProofRecord, RequireAnswer, TotalsRecord, WindowRecord,
+    BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ProofRecord, RequireAnswer, RequireSuccessRecord,
+    SuccessTry, TotalsRecord, WindowRecord,
     limit_counts::LimitCounts,
     propellant_record::{delta_v_field, stores_lines},
 };
-use crate::quantity::{format_number, unit_of};
+use crate::{
+    quantity::{format_number, unit_of},
+    uncertainty::ESTIMATE_TRIALS,
+};
 
 /// A sheet of text; writing to it does not fail.
 #[derive(Default)]
@@ -162,6 +166,13 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     let with_unit = |value: f64| format!("{} {unit}", format_number(value)).trim_end().to_owned();
     let (from, to) = (format_number(answer.from), with_unit(answer.to));
     sheet.line(format_args!("{vary}: from x = {} m to x = {} m", place(answer.start_x_m), place(answer.goal_x_m)));
+    if let Some(derating) = &answer.derating {
+        sheet.line(format_args!("{}", derating.sentence()));
+    }
+    if let Some(success) = &answer.success {
+        success_lines(&mut sheet, success, answer, &with_unit);
+        return sheet.0;
+    }
     match answer.reachable_at {
         Some(value) if answer.never_binds => {
             let hops = answer.hops.unwrap_or(0);
@@ -179,6 +190,9 @@ pub fn require_text(answer: &RequireAnswer) -> String {
         None => sheet.line(format_args!("no path found at any value from {from} to {to}")),
     }
     match answer.unreachable_at {
+        Some(value) if answer.derating.is_some() => {
+            sheet.line(format_args!("proved unreachable at {}, for the derated limits", with_unit(value)));
+        }
         Some(value) => sheet.line(format_args!("proved unreachable at {}", with_unit(value))),
         None if answer.never_binds => {}
         None => sheet.line(format_args!("proved unreachable at no value from {from} to {to}")),
@@ -201,6 +215,47 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     sheet.0
 }
 
+/// The least value with enough success, how sure it is, and what was tried where success does not grow with the key.
+fn success_lines(sheet: &mut Sheet, success: &RequireSuccessRecord, answer: &RequireAnswer, with_unit: &dyn Fn(f64) -> String) {
+    let least = format_number(success.success_min);
+    let (from, to) = (format_number(answer.from), with_unit(answer.to));
+    let best = success.tries.iter().max_by(|a, b| a.success_estimated.total_cmp(&b.success_estimated));
+    match (success.at, best) {
+        (Some(SuccessTry { value, hops, success_estimated, success_estimated_ci95: [low, high] }), _) => {
+            let hops = hops.unwrap_or(0);
+            sheet.line(format_args!(
+                "estimated success of at least {least} at {}, in {hops} hop{}: {success_estimated:.4} (95 % interval {low:.4} to {high:.4} of \
+                 {ESTIMATE_TRIALS} fixed trials, with the same draws at every value)",
+                with_unit(value),
+                plural(hops)
+            ));
+            let to = success.uncertain_to.map_or_else(|| "the end of the range".to_owned(), with_unit);
+            let from = success.uncertain_from.map_or_else(|| "the end of the range".to_owned(), with_unit);
+            sheet.line(format_args!("the 95 % interval of the estimate contains {least} between {from} and {to}"));
+        }
+        (None, Some(best)) => sheet.line(format_args!(
+            "estimated success of at least {least} at no value tried from {from} to {to}; the best is {:.4} at {}",
+            best.success_estimated,
+            with_unit(best.value)
+        )),
+        (None, None) => {}
+    }
+    if success.monotone {
+        sheet.line(format_args!("success grows with the key over the values tried; it need not between them"));
+    } else {
+        let beyond = if success.enough_from_there_on { "" } else { ", and more capable values are not always enough" };
+        sheet.line(format_args!(
+            "success does not always grow with the key{beyond}:\n{:>14}{:>8}{:>12}",
+            "value", "hops", "success"
+        ));
+        for tried in &success.tries {
+            let hops = tried.hops.map_or_else(|| "-".to_owned(), |hops| hops.to_string());
+            sheet.line(format_args!("{:>14}{hops:>8}{:>12.4}", format_number(tried.value), tried.success_estimated));
+        }
+    }
+    sheet.line(format_args!("{} values tried, from {from} to {to}", success.tries.len()));
+}
+
 /// How far one gets, and which limits refuse to go on.
 fn gap_lines(sheet: &mut Sheet, gap: &GapRecord) {
     sheet.line(format_args!(
@@ -212,6 +267,10 @@ fn gap_lines(sheet: &mut Sheet, gap: &GapRecord) {
         sheet.line(format_args!("what refuses all hops on from there, by pairs of cells: {}", ranked(&gap.refusals)));
     }
 }
+
+/// What a proof under derating is worth.
+const FOR_DERATED_LIMITS: &str =
+    "the proof is for the derated limits: under the whole limits there may be paths of fewer hops, or a path";
 
 /// The result of a proof, in a few lines.
 fn proof_lines(sheet: &mut Sheet, proof: &ProofRecord, means: FurtherMeans<'_>) {
@@ -274,6 +333,12 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
     if let Some(shortage) = &answer.propellant_shortage {
         sheet.line(format_args!("not with its propellant: {}", shortage.sentence()));
     }
+    if let Some(derating) = &answer.derating {
+        sheet.line(format_args!("{}", derating.sentence()));
+    }
+    if let Some(budget) = &answer.success_budget {
+        sheet.line(format_args!("{}", budget.sentence()));
+    }
     if let Some(refusal) = &answer.commands_refusal {
         sheet.line(format_args!("not with commands in steps: {refusal}"));
     }
@@ -289,6 +354,9 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         sheet.line(format_args!("no path has fewer than {lower} hop{}, whatever it takes from the machine", plural(lower)));
     } else if let Some(proof) = &answer.proof {
         proof_lines(&mut sheet, proof, means);
+        if answer.derating.is_some() {
+            sheet.line(format_args!("{FOR_DERATED_LIMITS}"));
+        }
         if answer.beside_line {
             sheet.line(format_args!("the proof is about hops on the line, and this path flies beside it"));
         }

@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    EffortRecord, MarginsRecord, TotalsRecord,
+    EffortRecord, MarginsRecord, SuccessBudgetRecord, TotalsRecord,
     compare_answer::{MARGIN_COLUMNS, TOTALS_COLUMNS, margin_numbers, totals_numbers},
     stated::stated,
 };
@@ -59,6 +59,9 @@ pub struct TradeRow {
     pub margins: Option<MarginsRecord>,
     /// The effort of the path, in the unit of the chosen effort; null without one.
     pub effort: Option<EffortRecord>,
+    /// Of a scenario with a budget of success: whether the path has it; if not, the cell has no path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub success_budget: Option<SuccessBudgetRecord>,
     /// Why there is no answer; absent if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
@@ -68,8 +71,8 @@ impl TradeRow {
     /// The row of a cell without an answer.
     pub fn failed(values: BTreeMap<String, f64>, error: String) -> Self {
         let (verdict, hops, lower_bound, totals, margins, effort) = (None, None, None, None, None, None);
-        let (above_escape, far_on_body, error) = (false, false, Some(error));
-        Self { values, verdict, hops, lower_bound, above_escape, far_on_body, totals, margins, effort, error }
+        let (above_escape, far_on_body, success_budget, error) = (false, false, None, Some(error));
+        Self { values, verdict, hops, lower_bound, above_escape, far_on_body, totals, margins, effort, success_budget, error }
     }
 
     /// Whether a path was found.
@@ -176,6 +179,12 @@ impl TradeAnswer {
         if without_path(false) {
             text.push_str("\n-: no path found\n");
         }
+        let unmet = self.rows.iter().filter_map(|row| row.success_budget.filter(|budget| !budget.met));
+        if let Some((least, most)) = unmet.map(|budget| (budget.estimated_success_min, budget.success_estimated)).reduce(better) {
+            let best = most.map_or_else(|| "none was flown".to_owned(), |most| format!("the best of these is {most:.4}"));
+            let _ =
+                writeln!(text, "   (or none with an estimated success of at least {least}, budget.estimated_success_min; {best})");
+        }
         if without_path(true) {
             text.push_str("\nx: proved, there is no path\n");
         }
@@ -199,22 +208,29 @@ impl TradeAnswer {
         let mut writer = csv::Writer::from_writer(out);
         let proved = self.is_with_proof();
         let bound: &[&str] = if proved { &["lower_bound"] } else { &[] };
-        writer.write_record(
-            [&keys[..], &["verdict", "hops"], bound, &TOTALS_COLUMNS, &MARGIN_COLUMNS, &["effort", "error"]].concat(),
-        )?;
+        let estimates = self.rows.iter().any(|row| row.success_budget.is_some());
+        let success: &[&str] = if estimates { &["success_estimated"] } else { &[] };
+        let first = [&keys[..], &["verdict", "hops"], bound].concat();
+        writer.write_record([&first[..], &TOTALS_COLUMNS, &MARGIN_COLUMNS, &["effort"], success, &["error"]].concat())?;
         let count = |hops: Option<u64>| hops.map(|hops| hops.to_string()).unwrap_or_default();
         for row in &self.rows {
             let values = keys.iter().map(|key| row.values.get(*key).map(f64::to_string).unwrap_or_default());
             let bound = proved.then(|| count(row.lower_bound.flatten()));
             let verdict = row.verdict.map(|verdict| verdict.to_string()).unwrap_or_default();
             let (totals, margins) = (totals_numbers(row.totals.as_ref()), margin_numbers(row.margins.as_ref()));
-            let numbers = totals.into_iter().chain(margins).chain([row.effort.map(|effort| effort.value)]);
+            let success = estimates.then(|| row.success_budget.and_then(|budget| budget.success_estimated));
+            let numbers = totals.into_iter().chain(margins).chain([row.effort.map(|effort| effort.value)]).chain(success);
             let numbers = numbers.map(|number| number.map(|number| number.to_string()).unwrap_or_default());
             let answer = [verdict, count(row.hops)].into_iter().chain(bound).chain(numbers);
             writer.write_record(values.chain(answer).chain([row.error.clone().unwrap_or_default()]))?;
         }
         writer.flush()
     }
+}
+
+/// The greater of two successes beside their budgets.
+fn better(a: (f64, Option<f64>), b: (f64, Option<f64>)) -> (f64, Option<f64>) {
+    if b.1 > a.1 { b } else { a }
 }
 
 /// The axis label of a key, with the unit from the end of its name.

@@ -132,6 +132,8 @@ const STEP_ANGLE: Kind = Kind::Number { min: 1e-6, max: 90.0 };
 const COORDINATE: Kind = Kind::Number { min: -1e12, max: 1e12 };
 /// No working machine has a standard deviation beyond these bounds.
 const SHARE: Kind = Kind::Number { min: 0.0, max: 100.0 };
+const PROPORTION: Kind = Kind::Number { min: 0.0, max: 1.0 };
+const DERATED: Kind = Kind::Number { min: 0.01, max: 1.0 };
 const SIGMA_ANGLE: Kind = Kind::Number { min: 0.0, max: 180.0 };
 const ELEVATION_ANGLE: Kind = Kind::Number { min: -90.0, max: 90.0 };
 
@@ -147,7 +149,7 @@ const DISTRIBUTIONS: [&str; 2] = [Distribution::ALL[0].name(), Distribution::ALL
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 81] = [
+pub const CATALOGUE: [Key; 85] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -319,6 +321,26 @@ pub const CATALOGUE: [Key; 81] = [
         Kind::Count { min: 1, max: 1000 },
         "hops beyond the fewest that a more reliable path may take; absent: 10, or half the fewest if that is more",
     ),
+    key(
+        "budget",
+        "estimated_success_min",
+        PROPORTION,
+        "least success, 0 to 1, that the fixed trials of a path estimate: the fewest hops that have it, in place of 0.98 of the best; without \
+         any the answer is no; needs [uncertainty]",
+    ),
+    key(
+        "derating",
+        "takeoff_speed",
+        DERATED,
+        "share of the greatest take-off speed that planning may use; trials fly all of it; absent: 1",
+    ),
+    key("derating", "landing_speed", DERATED, "share of the greatest landing speed that planning may use; absent: 1"),
+    key(
+        "derating",
+        "friction",
+        DERATED,
+        "share of the friction coefficients that planning may use, also for a rest slope that follows from them; absent: 1",
+    ),
     key("uncertainty", "takeoff_speed_sigma_m_s", FROM_ZERO, "standard deviation of the take-off speed, m/s"),
     key(
         "uncertainty",
@@ -412,6 +434,10 @@ mod tests {
             "mesh_scale",
             "no_data",
             "risk_extra_hops_max",
+            "estimated_success_min",
+            "takeoff_speed",
+            "landing_speed",
+            "friction",
             "takeoff_speed_sigma_fraction",
             "takeoff_speed_bias_sigma_fraction",
             "friction_sigma",

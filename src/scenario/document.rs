@@ -20,6 +20,17 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     tables.insert("contact".to_owned(), contact(scenario));
     tables.insert("terrain".to_owned(), terrain(scenario, named));
     tables.insert("search".to_owned(), search(scenario));
+    tables.insert("budget".to_owned(), object([("estimated_success_min", scenario.budget.estimated_success_min.map(Value::from))]));
+    let derating = scenario.derating;
+    let share = |share: f64| (share != 1.0).then(|| Value::from(share));
+    tables.insert(
+        "derating".to_owned(),
+        object([
+            ("takeoff_speed", share(derating.takeoff_speed)),
+            ("landing_speed", share(derating.landing_speed)),
+            ("friction", share(derating.friction)),
+        ]),
+    );
     tables
         .insert("uncertainty".to_owned(), scenario.uncertainty.as_ref().map_or_else(|| json!({}), |keys| uncertainty(keys, named)));
     tables.insert("report".to_owned(), object([("title", scenario.title.clone().map(Value::from))]));

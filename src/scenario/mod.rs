@@ -1,8 +1,10 @@
 //! The scenario: TOML as typed, then validated, and written again.
 
 mod backslashes;
+mod budget;
 mod catalogue;
 mod contact;
+mod derating;
 mod document;
 mod entries;
 mod file_kind;
@@ -12,6 +14,7 @@ mod read;
 mod schema;
 mod trials;
 
+pub use budget::Budget;
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    Entries, Place, ProblemKind, ScenarioProblem, UncertaintyKeys,
+    Budget, Entries, Place, ProblemKind, ScenarioProblem, UncertaintyKeys,
     propulsion::{self, landing},
 };
 use crate::{
@@ -13,8 +13,8 @@ use crate::{
     quantity::{Angle, AngleInterval, MapPoint},
     terrain::{LonLat, MapPlace, NoDataRule},
     world::{
-        Body, ClearanceRule, CommandSteps, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper, KNOWN_BODIES,
-        RestSlope, SurfaceProperties,
+        Body, ClearanceRule, CommandSteps, Derating, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper,
+        KNOWN_BODIES, RestSlope, SurfaceProperties,
     },
 };
 
@@ -118,6 +118,10 @@ pub struct Scenario {
     pub risk: ReliabilityUse,
     /// Hops beyond the fewest that a more reliable path may take, if hops are traded for reliability.
     pub risk_extra_hops_max: Option<u32>,
+    /// What a path has to give at least.
+    pub budget: Budget,
+    /// Shares of the limits that planning may use.
+    pub derating: Derating,
     /// The errors of the trials, if the scenario has `[uncertainty]`.
     pub uncertainty: Option<UncertaintyKeys>,
     /// Title of the picture.
@@ -148,8 +152,11 @@ impl Scenario {
         let terrain = terrain(&mut entries);
         let via = via(&mut entries, terrain.as_ref());
         let [friction_raster, keep_out] = overlays(&mut entries, &surface, terrain.as_ref());
+        let derating = super::derating::derating(&mut entries, &hopper, &surface);
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
-        let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries, uncertainty.as_ref());
+        let budget = super::budget::budget(&entries);
+        let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries, uncertainty.as_ref(), budget);
+        super::budget::check(&mut entries, budget, risk, uncertainty.as_ref());
         let search = search(&mut entries, super::trials::takeoff_choice(risk, uncertainty.as_ref()));
         let mut problems = entries.problems().to_vec();
         let Some(body) = body.filter(|_| problems.is_empty()) else {
@@ -175,6 +182,8 @@ impl Scenario {
             search,
             risk,
             risk_extra_hops_max,
+            budget,
+            derating,
             uncertainty,
             title: entries.text("report", "title").map(str::to_owned),
         })

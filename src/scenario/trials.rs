@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Entries, ProblemKind, Scenario, TerrainSource};
+use super::{Budget, Entries, ProblemKind, Scenario, TerrainSource};
 use crate::{
     ballistics::TakeoffChoice,
     chain::csv::MeasuredFile,
@@ -126,9 +126,10 @@ const fn is_on_a_map(terrain: Option<&TerrainSource>) -> bool {
 }
 
 /// How risk weighs, and how many extra hops it may cost. Where errors are given, hops are traded for reliability unless the scenario says
-/// otherwise: a path planned without regard to them stands on the edge of its limits.
-pub(super) fn risk(entries: &mut Entries, uncertainty: Option<&UncertaintyKeys>) -> (ReliabilityUse, Option<u32>) {
-    let absent = if has_errors(uncertainty) { ReliabilityUse::Traded } else { ReliabilityUse::Ignored };
+/// otherwise: a path planned without regard to them stands on the edge of its limits. A budget of success weighs errors of 0 as well.
+pub(super) fn risk(entries: &mut Entries, uncertainty: Option<&UncertaintyKeys>, budget: Budget) -> (ReliabilityUse, Option<u32>) {
+    let is_estimated = uncertainty.is_some() && budget.estimated_success_min.is_some();
+    let absent = if is_estimated || has_errors(uncertainty) { ReliabilityUse::Traded } else { ReliabilityUse::Ignored };
     let given = super::read::find(&ReliabilityUse::ALL, ReliabilityUse::name, entries.text("search", "risk"));
     let risk = given.unwrap_or(absent);
     let extra = entries.count("search", "risk_extra_hops_max").and_then(|hops| u32::try_from(hops).ok());
@@ -211,6 +212,7 @@ impl Scenario {
                 Policy::OpenLoop => TakeoffScatter::OfLandings,
             },
             over: over.cloned().map(Box::new),
+            whole: None,
         });
         let goal_tolerance_m = self.uncertainty.as_ref().map(|keys| keys.goal_tolerance_m);
         ReliabilityOptions { model, extra_hops_max, goal_tolerance_m }

@@ -9,7 +9,8 @@ use crate::{
 /// Whether two scenarios put the same limits on every hop between the same ends over the same points: ground, hopper and gravity.
 ///
 /// Speed limits are compared after the segments' own limits are applied, so one beyond the chain's limits makes no difference. What
-/// only counts in totals (mass, propellant, times, energies) or after a landing (bounces) is ignored.
+/// only counts in totals (mass, propellant, times, energies) or after a landing (bounces) is ignored; errors count where a budget of success
+/// estimates them.
 pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &Prepared)) -> bool {
     let machine = |hopper: &Hopper| HopperLimits {
         takeoff_speed_max_m_s: 0.0,
@@ -26,7 +27,13 @@ pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &P
         restitution: None,
         ..*hopper.limits()
     };
+    let estimated = |scenario: &Scenario| {
+        let least = scenario.budget.estimated_success_min?;
+        Some((least, scenario.uncertainty.clone(), scenario.risk, scenario.risk_extra_hops_max, scenario.search.takeoff))
+    };
     machine(&a.hopper) == machine(&b.hopper)
+        && a.derating == b.derating
+        && estimated(a) == estimated(b)
         && a.body.gravity.m_s2() == b.body.gravity.m_s2()
         && a.search.spacing == b.search.spacing
         && (on_a.start, on_a.goal) == (on_b.start, on_b.goal)

@@ -5,7 +5,9 @@ use std::{
     sync::Arc,
 };
 
-use super::{CaseRecord, JourneyEnd, PipelineError, Prepared, Survey, prepare, scenario_files, with_measured_errors};
+use super::{
+    CaseRecord, JourneyEnd, PipelineError, Prepared, Survey, pipeline::planned_over, prepare, scenario_files, with_measured_errors,
+};
 use crate::{
     chain::Station,
     hop::HopTest,
@@ -43,8 +45,16 @@ pub struct Case {
     pub base: PathBuf,
     /// The chain, with start and goal where they are known, and all warnings about the input.
     pub prepared: Prepared,
+    /// The same chain under the limits that planning may use, where they are shares of those of the machine.
+    derated: Option<Box<Prepared>>,
     /// The commands that the chain is prepared for.
     commands: Commands,
+}
+
+/// The scenario under the limits that planning may use, for these commands.
+fn derated_for(scenario: &Scenario, commands: Commands) -> Option<Scenario> {
+    let derated = scenario.derated()?;
+    Some(Scenario { hopper: commands.hopper(&derated.hopper), ..derated })
 }
 
 /// Why a scenario gives no case, or a case no answer.
@@ -71,7 +81,23 @@ impl Case {
     /// # Errors
     /// [`CaseError::NoTerrain`] and [`CaseError::Prepare`].
     pub fn new(scenario: Scenario, base: &Path, commands: Commands) -> Result<Self, CaseError> {
-        Self::prepared_by(scenario, base, commands, &mut |scenario, terrain| prepare(scenario, terrain, base))
+        let terrain = scenario.terrain.as_ref().ok_or(CaseError::NoTerrain)?;
+        let hopper = commands.hopper(&scenario.hopper);
+        let whole = Scenario { hopper, ..scenario.clone() };
+        if scenario.derating.is_none() {
+            let mut prepared = prepare(&whole, terrain, base)?;
+            let (scenario, of_errors) = with_measured_errors(scenario, base)?;
+            prepared.warnings.extend(of_errors);
+            return Ok(Self { scenario, base: base.to_path_buf(), prepared, derated: None, commands });
+        }
+        let survey = Survey::of(&whole, terrain, base)?;
+        let mut case = Self::over(&survey, scenario, base, commands)?;
+        case.prepared.beside_line = survey.beside_line(&whole)?;
+        let beside_line = case.prepared.beside_line.as_deref().map(|ground| Arc::new(planned_over(ground, &whole)));
+        if let Some(prepared) = &mut case.derated {
+            prepared.beside_line = beside_line;
+        }
+        Ok(case)
     }
 
     /// The same over terrain that was read before.
@@ -79,21 +105,17 @@ impl Case {
     /// # Errors
     /// As [`Case::new`].
     pub fn over(survey: &Survey, scenario: Scenario, base: &Path, commands: Commands) -> Result<Self, CaseError> {
-        Self::prepared_by(scenario, base, commands, &mut |scenario, _| survey.prepare(scenario))
-    }
-
-    fn prepared_by(
-        scenario: Scenario,
-        base: &Path,
-        commands: Commands,
-        prepare: &mut dyn FnMut(&Scenario, &TerrainSource) -> Result<Prepared, PipelineError>,
-    ) -> Result<Self, CaseError> {
         let (scenario, of_errors) = with_measured_errors(scenario, base)?;
-        let terrain = scenario.terrain.as_ref().ok_or(CaseError::NoTerrain)?;
+        if scenario.terrain.is_none() {
+            return Err(CaseError::NoTerrain);
+        }
         let hopper = commands.hopper(&scenario.hopper);
-        let mut prepared = prepare(&Scenario { hopper, ..scenario.clone() }, terrain)?;
+        let whole = Scenario { hopper, ..scenario.clone() };
+        let derated = derated_for(&scenario, commands);
+        let derated = derated.map(|derated| survey.prepare_derated(&whole, &derated)).transpose()?.map(Box::new);
+        let mut prepared = survey.prepare(&whole)?;
         prepared.warnings.extend(of_errors);
-        Ok(Self { scenario, base: base.to_path_buf(), prepared, commands })
+        Ok(Self { prepared, scenario, base: base.to_path_buf(), derated, commands })
     }
 
     /// The same case for these commands: its chain is prepared again if they make a difference.
@@ -109,9 +131,19 @@ impl Case {
         Ok(case)
     }
 
-    /// The hop test over the chain.
+    /// The chain under the limits that planning may use.
+    pub fn planning(&self) -> &Prepared {
+        self.derated.as_deref().unwrap_or(&self.prepared)
+    }
+
+    /// The hop test over the chain, under the limits that planning may use.
     pub fn hop_test(&self) -> HopTest {
-        HopTest::new(Arc::clone(&self.prepared.chain))
+        HopTest::new(Arc::clone(&self.planning().chain))
+    }
+
+    /// The hop test under the whole limits, where planning may use only shares of them.
+    pub fn whole_test(&self) -> Option<HopTest> {
+        self.derated.as_ref().map(|_| HopTest::new(Arc::clone(&self.prepared.chain)))
     }
 
     /// Start and goal.

@@ -107,7 +107,7 @@ fn checked(
     let searched = Searched::all(&test, pairs, &case, proof, progress)?;
     let mut checked = Checked { case, pairs: Vec::with_capacity(pairs.len()), warnings: Vec::new() };
     for (&ends, searched) in pairs.iter().zip(searched) {
-        let (answer, path) = searched.answer_with_path(&test, ends, (&checked.case.prepared, &checked.case.scenario.search));
+        let (answer, path) = searched.answer_with_path(&test, ends, &checked.case);
         // A path of too many hops to list is one all the same.
         let path = path.unwrap_or(None);
         for warning in path.iter().flat_map(|path| checked.case.scenario.path_warnings(path)) {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Planned, SimulateError, dem_ground::dem_ground, front::FlownJourney, sensitivity::sensitivity, simulate::Flyer};
+use super::{Planned, SimulateError, sensitivity::sensitivity};
 #[cfg(feature = "plot")]
 use crate::figure::{
     ConeWidthFigure, FigureError, LandingErrorFigure, Picture, SensitivityFigure, draw_cone_width, draw_landing_errors,
@@ -10,15 +10,13 @@ use crate::figure::{
 };
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain},
-    graph::{self, NodeSet, NodesError, Outcome, SearchError, SearchOptions, most_reliable_paths, search_most_reliable},
+    graph::{self, Outcome, SearchError, search_most_reliable},
     hop::HopTest,
     path::{Hop, PathError, generate},
     progress::Progress,
-    report::{ConeWidthAnswer, RiskTradeAnswer, RiskTradeRow, SensitivityAnswer, TradedPath, WorstDriftAnswer},
-    scenario::UncertaintyKeys,
-    uncertainty::{
-        Policy,
-        experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
+    report::{ConeWidthAnswer, SensitivityAnswer, WorstDriftAnswer},
+    uncertainty::experiments::{
+        CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift,
     },
     world::Direction,
 };
@@ -33,12 +31,6 @@ pub enum ExperimentError {
     /// A path that is not generated.
     #[error(transparent)]
     Path(#[from] PathError),
-    /// The nodes of the most reliable paths.
-    #[error(transparent)]
-    Nodes(#[from] NodesError),
-    /// The trials.
-    #[error(transparent)]
-    Trials(#[from] SimulateError),
     /// Cones of another width.
     #[error("cones at {share} of their width: {problem}")]
     Cones {
@@ -58,17 +50,9 @@ pub enum ExperimentError {
         "sensitivity takes each error away in turn, but [uncertainty] has no error above 0: give it one, such as takeoff_angle_sigma_deg = 0.5"
     )]
     NoErrors,
-    /// Trials that do not follow their path.
-    #[error("{}: set uncertainty.policy to \"open-loop\"", Self::REPLANS)]
-    Replans,
-    /// No path to compare with.
-    #[error("there is no nominal path to compare with")]
-    NoPath,
-}
-
-impl ExperimentError {
-    /// What is found where trials do not follow their path.
-    pub const REPLANS: &str = "risk-trade compares planned paths, but the policy is replan, which does not follow a planned path";
+    /// The trials.
+    #[error(transparent)]
+    Trials(#[from] SimulateError),
 }
 
 /// Why a chain with cones of another width gives no path.
@@ -94,8 +78,6 @@ pub enum ExperimentAnswer {
     WorstDrift(WorstDriftAnswer),
     /// Of [`Experiment::ConeWidth`].
     ConeWidth(ConeWidthAnswer),
-    /// Of [`Experiment::RiskTrade`].
-    RiskTrade(RiskTradeAnswer),
     /// Of [`Experiment::Sensitivity`].
     Sensitivity(SensitivityAnswer),
 }
@@ -106,7 +88,6 @@ impl ExperimentAnswer {
         match self {
             Self::WorstDrift(answer) => answer.text(),
             Self::ConeWidth(answer) => answer.text(),
-            Self::RiskTrade(answer) => answer.text(),
             Self::Sensitivity(answer) => answer.text(),
         }
     }
@@ -121,21 +102,14 @@ impl ExperimentAnswer {
             Self::WorstDrift(answer) => Some(draw_landing_errors(&LandingErrorFigure::of_worst_drift(answer, title))),
             Self::ConeWidth(answer) => Some(draw_cone_width(&ConeWidthFigure::of(answer, title))),
             Self::Sensitivity(answer) => Some(draw_sensitivity(&SensitivityFigure::of(answer, title))),
-            Self::RiskTrade(_) => None,
         }
     }
 }
 
-/// An experiment that was run.
-#[derive(Clone, Debug)]
-pub struct Experimented {
-    /// The answer as plain data; `None` without hops to experiment with.
-    pub answer: Option<ExperimentAnswer>,
-    /// The warnings about its trials.
-    pub warnings: Vec<String>,
-}
-
 /// Runs an experiment on a plan. `reading`: how [`Experiment::WorstDrift`] interprets the paper; the others ignore it.
+///
+/// # Returns
+/// The answer as plain data; `None` without hops to experiment with.
 ///
 /// # Errors
 /// [`ExperimentError`].
@@ -144,13 +118,11 @@ pub fn experiment(
     which: Experiment,
     reading: DriftReading,
     progress: &dyn Progress,
-) -> Result<Experimented, ExperimentError> {
+) -> Result<Option<ExperimentAnswer>, ExperimentError> {
     let Some(path) = planned.path.as_ref().filter(|path| !path.hops.is_empty()) else {
-        return Ok(Experimented { answer: None, warnings: Vec::new() });
+        return Ok(None);
     };
-    let keys = planned.case.scenario.uncertainty.as_ref();
-    let seed = keys.cloned().unwrap_or_default().seed;
-    let mut warnings = Vec::new();
+    let seed = planned.case.scenario.uncertainty.clone().unwrap_or_default().seed;
     let answer = match which {
         Experiment::WorstDrift => {
             let numbers = DriftExperiment::of_the_paper(reading, seed);
@@ -158,18 +130,9 @@ pub fn experiment(
             ExperimentAnswer::WorstDrift(WorstDriftAnswer::new(&numbers, &landings))
         }
         Experiment::ConeWidth => ExperimentAnswer::ConeWidth(cone_widths(planned, &path.hops, seed, progress)?),
-        Experiment::RiskTrade => {
-            let answer = ExperimentAnswer::RiskTrade(risk_trade(planned, progress)?);
-            warnings.extend(keys.and_then(UncertaintyKeys::warning).map(str::to_owned));
-            answer
-        }
-        Experiment::Sensitivity => {
-            let answer = ExperimentAnswer::Sensitivity(sensitivity(planned, path, progress)?);
-            warnings.extend(keys.and_then(|keys| keys.warning()).map(str::to_owned));
-            answer
-        }
+        Experiment::Sensitivity => ExperimentAnswer::Sensitivity(sensitivity(planned, path, progress)?),
     };
-    Ok(Experimented { answer: Some(answer), warnings })
+    Ok(Some(answer))
 }
 
 /// Plans and flies with successively narrower cones, on the same draws.
@@ -211,35 +174,4 @@ fn mean_takeoff_width_deg(chain: &ConstrainedChain) -> f64 {
     let widths: Vec<f64> =
         stated.map(|line| line.takeoff.angles()).map(|angles| angles.max.degrees() - angles.min.degrees()).collect();
     widths.iter().sum::<f64>() / widths.len().max(1) as f64
-}
-
-/// The most reliable path for every number of hops, estimated and flown.
-fn risk_trade(planned: &Planned, progress: &dyn Progress) -> Result<RiskTradeAnswer, ExperimentError> {
-    let Planned { case, test, ends: (start, goal), found, .. } = planned;
-    let scenario = &case.scenario;
-    let missing = ExperimentError::NoUncertainty { experiment: Experiment::RiskTrade };
-    let keys = scenario.uncertainty.as_ref().ok_or(missing)?;
-    if keys.policy == Policy::Replan {
-        return Err(ExperimentError::Replans);
-    }
-    let nodes = NodeSet::new(test.chain(), *start, *goal, found.spacing)?;
-    let ground = dem_ground(case)?;
-    let reliability = scenario.reliability_with(scenario.risk_extra_hops_max, ground.as_ref());
-    let mut reliable_paths = most_reliable_paths(test, &nodes, &scenario.search, &reliability, progress)?;
-    let journey = FlownJourney { scenario, test, ends: planned.ends, ground: ground.as_ref() };
-    journey.estimate(&mut found.clone(), &mut reliable_paths, progress)?;
-    // The path planned without regard to risk, over the same nodes.
-    let without_risk = SearchOptions { spacing: Some(found.spacing), ..scenario.search.clone() };
-    let plain = graph::search(test, *start, *goal, &without_risk, progress)?;
-    let Outcome::Path { legs, .. } = &plain.outcome else { return Err(ExperimentError::NoPath) };
-    let path = case.prepared.path(test, legs, &scenario.search)?;
-    let flyer = Flyer::new(planned, &plain, &[keys.policy], progress)?;
-    let options = keys.options();
-    let mut rows = vec![RiskTradeRow::new(TradedPath::LeastEffort, path.hops.len(), None, &flyer.fly(&path, &options, progress)?)];
-    for candidate in &reliable_paths {
-        let path = case.prepared.path(test, &candidate.legs, &scenario.search)?;
-        let summary = flyer.fly(&path, &options, progress)?;
-        rows.push(RiskTradeRow::new(TradedPath::MostReliable, path.hops.len(), candidate.success, &summary));
-    }
-    Ok(RiskTradeAnswer { trials: keys.trials, seed: keys.seed, policy: keys.policy, paths: rows })
 }

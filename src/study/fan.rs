@@ -116,7 +116,7 @@ impl PreparedFan {
         let mut of_overlays = overlays.without_effect_on_dem(dem.bounds());
         of_overlays.extend(coarse_dem_warning(&scenario.hopper, dem.georeference()));
         let spacing = scenario.search.spacing.unwrap_or(POINTS_PER_SEGMENT);
-        Ok(Self { ground: overlays.ground(dem, scenario), projection, from, spacing, warnings, of_overlays })
+        Ok(Self { ground: overlays.planning_ground(dem, scenario), projection, from, spacing, warnings, of_overlays })
     }
 
     /// What the slices need, which takes a small part of the time of the answer.

@@ -2,25 +2,95 @@
 
 use std::sync::Arc;
 
-use super::SimulateError;
+use super::{Case, JourneyError, SimulateError, dem_ground::dem_ground, journey::Searched, pipeline::planned_over};
 use crate::{
     chain::Station,
-    graph::{self, CostToGo, NodeSet, Outcome, ReliablePath, RiskModel, TakeoffScatter, preferred_path},
+    graph::{
+        self, CostToGo, NodeSet, Outcome, ReliabilityUse, ReliablePath, RiskModel, TakeoffScatter, most_reliable_paths,
+        path_within_budget, preferred_path,
+    },
     ground::{DemGround, Surface},
     hop::HopTest,
     path::{HopPath, PathError, generate},
     progress::Progress,
+    report::{FrontRecord, SuccessBudgetRecord, TotalsRecord, estimate_ci95},
     scenario::Scenario,
-    uncertainty::{Mission, Policy, Simulation, TrialOptions, Uncertainty},
+    uncertainty::{ESTIMATE_TRIALS, Mission, Policy, Simulation, TrialOptions, Uncertainty},
 };
 
+/// The amounts of a front, of which each path improves on one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Front {
+    /// Hops against the estimated success.
+    HopsRisk,
+}
+
+impl Front {
+    /// All of them.
+    pub const ALL: [Self; 1] = [Self::HopsRisk];
+
+    /// The amounts, with commas.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::HopsRisk => "hops,risk",
+        }
+    }
+}
+
+/// A front of hops against risk for a scenario without errors to fly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "found no [uncertainty], expected the errors that a front of hops against risk estimates: add deviations above 0, such as \
+     uncertainty.takeoff_speed_sigma_fraction = 0.02 and uncertainty.takeoff_angle_sigma_deg = 1, and uncertainty.goal_tolerance_m"
+)]
+pub struct FrontWithoutErrors;
+
+/// The front of hops against reliability over the nodes of a search, from the paths that it estimated or from new ones.
+pub(super) fn front(
+    case: &Case,
+    (test, ends): (&HopTest, (Station, Station)),
+    searched: &Searched,
+    progress: &dyn Progress,
+) -> Result<Vec<FrontRecord>, JourneyError> {
+    let (scenario, found) = (&case.scenario, &searched.found);
+    let Some(keys) = scenario.uncertainty.as_ref().filter(|_| matches!(found.outcome, Outcome::Path { .. })) else {
+        return Ok(Vec::new());
+    };
+    let ground = dem_ground(case).map_err(Box::new)?;
+    let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
+    let mut paths = searched.reliable_paths.clone();
+    if scenario.risk != ReliabilityUse::Traded {
+        let nodes = NodeSet::new(test.chain(), ends.0, ends.1, found.spacing).map_err(graph::SearchError::from)?;
+        let reliability = scenario.reliability_with(scenario.risk_extra_hops_max, ground.as_ref());
+        let reliability = reliability.flown_under(journey.whole.as_ref());
+        paths = most_reliable_paths(test, &nodes, &scenario.search, &reliability, progress)?;
+        journey.fly_front(found, &mut paths, progress).map_err(Box::new)?;
+    }
+    let row = |path: &ReliablePath| {
+        let success_estimated = path.success?;
+        let hops = journey.generated(path).ok()?;
+        Some(FrontRecord {
+            hops: path.cost.hops(),
+            success_estimated,
+            success_estimated_ci95: estimate_ci95(success_estimated),
+            trials: ESTIMATE_TRIALS,
+            policy: keys.policy,
+            planned: matches!(&found.outcome, Outcome::Path { legs, .. } if *legs == path.legs),
+            totals: TotalsRecord::from(&hops.totals),
+        })
+    };
+    Ok(FrontRecord::improving(paths.iter().filter_map(row)))
+}
+
 /// A journey whose paths are flown in trials.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct FlownJourney<'a> {
     /// The scenario, with its errors.
     pub(super) scenario: &'a Scenario,
-    /// The hop test over its chain.
+    /// The hop test over its chain, under the limits that planning may use.
     pub(super) test: &'a HopTest,
+    /// The same under the whole limits, where they are others.
+    pub(super) whole: Option<HopTest>,
     /// Start and goal.
     pub(super) ends: (Station, Station),
     /// The whole DEM, if the chain was sliced from one.
@@ -42,15 +112,19 @@ impl FlownJourney<'_> {
     ) -> Result<Simulation, SimulateError> {
         let (start, goal) = self.ends;
         let mission = match self.ground {
-            None => Mission::along_chain(self.test.clone(), path.clone(), start, goal),
+            None => Mission::along_chain(self.whole.as_ref().unwrap_or(self.test).clone(), path.clone(), start, goal),
             Some(ground) => {
                 let chain = self.test.chain();
                 Mission::over_dem(ground.clone(), path.clone(), chain.contact_point(&start), chain.contact_point(&goal))
             }
         };
-        let mission = match to_go {
-            Some(to_go) => mission.with_replanning(self.test.clone(), Arc::clone(to_go)),
-            None => mission,
+        let mission = match (to_go, self.ground) {
+            (None, _) => mission,
+            (Some(to_go), Some(ground)) if self.whole.is_some() => {
+                let planned = planned_over(ground, self.scenario);
+                mission.with_replanning(self.test.clone(), Arc::clone(to_go)).planned_over(planned)
+            }
+            (Some(to_go), _) => mission.with_replanning(self.test.clone(), Arc::clone(to_go)),
         };
         Ok(Simulation::new(&mission, errors)?)
     }
@@ -69,7 +143,8 @@ impl FlownJourney<'_> {
     fn costs_with_all_hops(&self, found: &graph::Answer, progress: &dyn Progress) -> Result<CostToGo, SimulateError> {
         let nodes = NodeSet::new(self.test.chain(), self.ends.0, self.ends.1, found.spacing)?;
         let options = &self.scenario.search;
-        let Some(mut reliability) = self.scenario.reliability(self.ground) else {
+        let reliability = self.scenario.reliability(self.ground);
+        let Some(mut reliability) = reliability.map(|reliability| reliability.flown_under(self.whole.as_ref())) else {
             return Ok(CostToGo::of(self.test, nodes, options, progress)?);
         };
         if let RiskModel::Flown { takeoffs, .. } = &mut reliability.model {
@@ -91,19 +166,43 @@ impl FlownJourney<'_> {
         Ok(self.simulation(path, to_go.as_ref())?.estimated_success(options, progress)?)
     }
 
-    /// Estimates the success of the paths of a front, and takes the one to fly: [`preferred_path`].
+    /// Estimates the success of the paths of a front, and takes the one to fly: [`preferred_path`], or under a budget of success
+    /// [`path_within_budget`].
     ///
-    /// A robot that replans and may take more hops is another robot: every path is estimated with the hops that it has.
+    /// # Returns
+    /// What the budget says of that path; `None` without a budget or without a path.
     pub(super) fn estimate(
         &self,
         found: &mut graph::Answer,
         front: &mut [ReliablePath],
         progress: &dyn Progress,
+    ) -> Result<Option<SuccessBudgetRecord>, SimulateError> {
+        let Outcome::Path { legs, .. } = &found.outcome else { return Ok(None) };
+        // Who is at the goal already is there for certain.
+        let stays = legs.is_empty();
+        self.fly_front(found, front, progress)?;
+        let least = self.scenario.budget.estimated_success_min;
+        let within = least.and_then(|least| path_within_budget(front, least));
+        let preferred = within.map(|(path, _)| path).or_else(|| preferred_path(front));
+        let preferred = preferred.and_then(|preferred| front.get(preferred));
+        if let Some(path) = preferred {
+            found.follow(path);
+        }
+        let success = preferred.and_then(|path| Some((path.cost.hops(), path.success?)));
+        let met = stays || within.is_some_and(|(_, met)| met);
+        Ok(least.map(|least| SuccessBudgetRecord::new(least, met, if stays { Some((0, 1.0)) } else { success })))
+    }
+
+    /// Estimates the success of the paths of a front.
+    ///
+    /// A robot that replans and may take more hops is another robot: every path is estimated with the hops that it has.
+    pub(super) fn fly_front(
+        &self,
+        found: &graph::Answer,
+        front: &mut [ReliablePath],
+        progress: &dyn Progress,
     ) -> Result<(), SimulateError> {
-        let is_path = matches!(found.outcome, Outcome::Path { .. });
-        let Some((keys, fewest)) =
-            self.scenario.uncertainty.as_ref().filter(|_| is_path).zip(front.first().map(|path| path.cost.hops()))
-        else {
+        let Some((keys, fewest)) = self.scenario.uncertainty.as_ref().zip(front.first().map(|path| path.cost.hops())) else {
             return Ok(());
         };
         let replans = keys.policy == Policy::Replan;
@@ -113,9 +212,6 @@ impl FlownJourney<'_> {
             let Ok(hops) = self.generated(path) else { continue };
             let to_go = to_go.as_ref().map(|to_go| Arc::new(to_go.with_fewer_extra_hops(path.cost.hops() - fewest)));
             path.success = Some(self.simulation(&hops, to_go.as_ref())?.estimated_success(&keys.options(), progress)?);
-        }
-        if let Some(path) = preferred_path(front).and_then(|preferred| front.get(preferred)) {
-            found.follow(path);
         }
         Ok(())
     }

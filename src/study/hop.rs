@@ -6,7 +6,7 @@ use crate::{
     graph::{Edge, Leg},
     hop::{HopTest, TakeoffSet},
     path::{HopPath, PathError},
-    report::HopAnswer,
+    report::{DeratingRecord, HopAnswer},
 };
 
 /// Why there is no answer. That the hop is not feasible is one.
@@ -53,7 +53,8 @@ pub fn hop(case: &Case) -> Result<Hopped, HopError> {
         height_m: best.apex_height_m,
         speed_m_s: best.takeoff_speed_m_s.max(best.landing_speed_m_s),
     });
-    let warnings = constant_gravity_warnings(&case.scenario.body, extremes);
+    let mut warnings = constant_gravity_warnings(&case.scenario.body, extremes);
+    warnings.extend(DeratingRecord::of(&case.scenario.derating).map(|derating| derating.sentence()));
     Ok(Hopped { case, test, ends: (takeoff, landing), answer, warnings })
 }
 
@@ -67,6 +68,6 @@ impl Hopped {
         let search = &self.case.scenario.search;
         let set = self.test.takeoff_set(&takeoff, &landing);
         let Some(lofts) = set.as_ref().and_then(TakeoffSet::lofts) else { return Ok(None) };
-        self.case.prepared.path(&self.test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts), loft: None }], search).map(Some)
+        self.case.planning().path(&self.test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts), loft: None }], search).map(Some)
     }
 }

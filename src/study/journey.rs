@@ -1,6 +1,6 @@
 //! The search for a journey, and the proof where one is requested: what check, plan, compare and require share.
 
-use super::{Case, CaseError, Prepared, SimulateError, dem_ground::dem_ground, front::FlownJourney};
+use super::{Case, CaseError, SimulateError, dem_ground::dem_ground, front::FlownJourney};
 use crate::{
     chain::Station,
     graph::{
@@ -11,7 +11,7 @@ use crate::{
     hop::HopTest,
     path::{Hop, HopPath, PathError, TooManyHops},
     progress::Progress,
-    report::{CheckAnswer, SigmaMarginsRecord, SuccessEstimate},
+    report::{CheckAnswer, DeratingRecord, SigmaMarginsRecord, SuccessBudgetRecord, SuccessEstimate},
     scenario::Scenario,
     uncertainty::HopScatter,
 };
@@ -54,6 +54,8 @@ pub(super) struct Searched {
     pub(super) found: graph::Answer,
     /// The Pareto front of hops against success probability, where the scenario weighs risk.
     pub(super) reliable_paths: Vec<ReliablePath>,
+    /// What the budget of success says of the path, where the scenario has one.
+    pub(super) success: Option<SuccessBudgetRecord>,
     /// The bounds, and the budget of cells.
     pub(super) proof: Option<(Bounds, usize)>,
 }
@@ -68,19 +70,18 @@ impl Searched {
         progress: &dyn Progress,
     ) -> Result<Self, JourneyError> {
         let Some(Proof { budget_cells }) = proof else {
-            let (found, reliable_paths) = search(test, ends, case, progress)?;
-            return Ok(Self { found, reliable_paths, proof: None });
+            return search(test, ends, case, progress);
         };
         let options = case.scenario.search.clone();
         let options = BoundsOptions { budget_cells, search: options, explain: true, ..BoundsOptions::default() };
         let bounds = bounds(test, ends.0, ends.1, &options, progress)?;
         // The bounds are on the fewest hops; the most reliable path may take more.
-        let (found, reliable_paths) = if weighs_reliability(&case.scenario) && bounds.answer.hops().is_some() {
+        let searched = if weighs_reliability(&case.scenario) && bounds.answer.hops().is_some() {
             search(test, ends, case, progress)?
         } else {
-            (bounds.answer.clone(), Vec::new())
+            Self::of(bounds.answer.clone())
         };
-        Ok(Self { found, reliable_paths, proof: Some((bounds, budget_cells)) })
+        Ok(Self { proof: Some((bounds, budget_cells)), ..searched })
     }
 
     /// The same for many pairs: one search from each start; pair by pair for proofs and where the most reliable paths are wanted.
@@ -94,12 +95,16 @@ impl Searched {
         if proof.is_some() {
             return pairs.iter().map(|&ends| Self::new(test, ends, case, proof, progress)).collect();
         }
-        let found: Vec<graph::Answer> = if weighs_reliability(&case.scenario) {
-            pairs.iter().map(|&ends| Ok(search(test, ends, case, progress)?.0)).collect::<Result<_, JourneyError>>()?
-        } else {
-            graph::search_pairs(test, pairs, &case.scenario.search, progress)?
-        };
-        Ok(found.into_iter().map(|found| Self { found, reliable_paths: Vec::new(), proof: None }).collect())
+        if weighs_reliability(&case.scenario) {
+            return pairs.iter().map(|&ends| search(test, ends, case, progress)).collect();
+        }
+        let found = graph::search_pairs(test, pairs, &case.scenario.search, progress)?;
+        Ok(found.into_iter().map(Self::of).collect())
+    }
+
+    /// The answer of a search that does not weigh reliability.
+    const fn of(found: graph::Answer) -> Self {
+        Self { found, reliable_paths: Vec::new(), success: None, proof: None }
     }
 
     /// How reliably the path of the answer is flown, under the policy of the scenario, and how its hops scatter; `None` without errors.
@@ -118,7 +123,7 @@ impl Searched {
         let hops = self.found.hops();
         let known = self.reliable_paths.iter().find(|path| Some(path.cost.hops()) == hops).and_then(|path| path.success);
         let ground = dem_ground(case).map_err(Box::new)?;
-        let journey = FlownJourney { scenario, test, ends, ground: ground.as_ref() };
+        let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
         let success_estimated = match known {
             Some(share) => share,
             None => journey.success_of(&self.found, path, &keys.options(), progress).map_err(Box::new)?,
@@ -144,13 +149,15 @@ impl Searched {
         &self,
         test: &HopTest,
         (start, goal): (Station, Station),
-        (prepared, options): (&Prepared, &graph::SearchOptions),
+        case: &Case,
     ) -> (CheckAnswer, Result<Option<HopPath>, TooManyHops>) {
+        let (prepared, options) = (case.planning(), &case.scenario.search);
         let answer = CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &self.found, options.effort);
         let answer = match &self.proof {
             None => answer,
             Some((bounds, budget)) => answer.with_bounds(bounds, *budget),
         };
+        let answer = answer.with_success_budget(self.success).with_derating(DeratingRecord::of(&case.scenario.derating));
         let Outcome::Path { legs, .. } = &self.found.outcome else { return (answer, Ok(None)) };
         match prepared.path(test, legs, options) {
             Ok(path) => (answer.with_path(Some(&path)), Ok(Some(path))),
@@ -171,19 +178,20 @@ pub(super) fn search(
     ends: (Station, Station),
     case: &Case,
     progress: &dyn Progress,
-) -> Result<(graph::Answer, Vec<ReliablePath>), JourneyError> {
+) -> Result<Searched, JourneyError> {
     let scenario = &case.scenario;
     let options = &scenario.search;
     if !weighs_reliability(scenario) {
-        return Ok((graph::search(test, ends.0, ends.1, options, progress)?, Vec::new()));
+        return Ok(Searched::of(graph::search(test, ends.0, ends.1, options, progress)?));
     }
     let flown = scenario.uncertainty.is_some();
     let ground = if flown { dem_ground(case).map_err(Box::new)? } else { None };
-    let journey = FlownJourney { scenario, test, ends, ground: ground.as_ref() };
-    let Some(reliability) = scenario.reliability(ground.as_ref()) else {
-        return Ok((graph::search(test, ends.0, ends.1, options, progress)?, Vec::new()));
+    let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
+    let reliability = scenario.reliability(ground.as_ref());
+    let Some(reliability) = reliability.map(|reliability| reliability.flown_under(journey.whole.as_ref())) else {
+        return Ok(Searched::of(graph::search(test, ends.0, ends.1, options, progress)?));
     };
     let (mut found, mut front) = search_most_reliable(test, ends.0, ends.1, options, &reliability, progress)?;
-    journey.estimate(&mut found, &mut front, progress).map_err(Box::new)?;
-    Ok((found, front))
+    let success = journey.estimate(&mut found, &mut front, progress).map_err(Box::new)?;
+    Ok(Searched { success, reliable_paths: front, ..Searched::of(found) })
 }

@@ -29,7 +29,7 @@ use crate::{
         read_keep_out, read_mesh_with, slice_legs, slice_mesh,
     },
     uncertainty::UncertaintyProblem,
-    world::FrictionCone,
+    world::{Derating, FrictionCone},
 };
 
 /// A chain ready to be analysed, with start and goal if known.
@@ -155,10 +155,7 @@ fn measured_problems(path: &Path, problems: &[UncertaintyProblem]) -> String {
 /// [`PipelineError`].
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
     let survey = Survey::of(scenario, source, base)?;
-    let beside_line = match &survey.ground {
-        Surveyed::Slice { legs, overlays, dem: Some(dem) } => dem.beside_line(legs, overlays, scenario)?,
-        Surveyed::Slice { dem: None, .. } | Surveyed::Chain(_) => None,
-    };
+    let beside_line = survey.beside_line(scenario)?;
     Ok(Prepared { beside_line, ..survey.prepare(scenario)? })
 }
 
@@ -222,6 +219,26 @@ impl Survey {
     /// # Errors
     /// [`PipelineError`], if segments are left without constraints or an end lies off the chain.
     pub fn prepare(&self, scenario: &Scenario) -> Result<Prepared, PipelineError> {
+        self.prepared(scenario, &Derating::NONE)
+    }
+
+    /// The ground beside the line, where a hopper with headings in steps leaves it.
+    pub(super) fn beside_line(&self, scenario: &Scenario) -> Result<Option<Arc<DemGround>>, PipelineError> {
+        match &self.ground {
+            Surveyed::Slice { legs, overlays, dem: Some(dem) } => dem.beside_line(legs, overlays, scenario),
+            Surveyed::Slice { dem: None, .. } | Surveyed::Chain(_) => Ok(None),
+        }
+    }
+
+    /// As [`prepare`](Self::prepare) for the limits that planning may use, of a scenario that has them
+    /// ([`Scenario::derated`]). `whole`: the scenario with the whole limits.
+    pub(super) fn prepare_derated(&self, whole: &Scenario, derated: &Scenario) -> Result<Prepared, PipelineError> {
+        // The frictions of a slice are those of the scenario: they are laid whole, then derated with all others of the chain.
+        let laid = Scenario { surface: whole.surface, ..derated.clone() };
+        self.prepared(&laid, &whole.derating)
+    }
+
+    fn prepared(&self, scenario: &Scenario, derating: &Derating) -> Result<Prepared, PipelineError> {
         let mut warnings = self.warnings.clone();
         let (geometry, dem, ends) = match &self.ground {
             Surveyed::Slice { legs, overlays, dem } => {
@@ -232,7 +249,11 @@ impl Survey {
             }
             Surveyed::Chain(chain) => (chain.clone(), None, (None, None)),
         };
-        resolved(scenario, (geometry, dem), ends, self.projection.clone(), warnings)
+        if derating.is_none() {
+            return resolved(scenario, (geometry, dem), ends, self.projection.clone(), warnings);
+        }
+        let scenario = Scenario { surface: derating.surface(&scenario.surface), ..scenario.clone() };
+        resolved(&scenario, (geometry.derated(derating), dem), ends, self.projection.clone(), warnings)
     }
 }
 
@@ -401,6 +422,11 @@ impl Overlays {
         DemGround::new(terrain, &scenario.hopper, scenario.body.gravity, &scenario.surface)
     }
 
+    /// The same under the limits that planning may use.
+    pub(super) fn planning_ground(&self, dem: Dem, scenario: &Scenario) -> DemGround {
+        planned_over(&self.ground(dem, scenario), scenario)
+    }
+
     /// The overlay files of a scenario, relative to its folder.
     pub fn files(scenario: &Scenario) -> impl Iterator<Item = &Path> {
         [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
@@ -448,6 +474,14 @@ impl Overlays {
         let warnings = self.not_compared().chain(raster).chain(keep_out).chain(replaced).collect();
         Ok((PolygonalChain::from_legs(&legs, constant)?, warnings))
     }
+}
+
+/// The ground of a DEM under the limits that planning may use, of a scenario with the whole limits; the same where those are not derated.
+pub(super) fn planned_over(ground: &DemGround, scenario: &Scenario) -> DemGround {
+    let Some(derated) = scenario.derated() else { return ground.clone() };
+    let overlays = ground.terrain().overlays().with_friction_share(scenario.derating.friction);
+    let terrain = OverlaidDem::new(ground.terrain().shared_dem(), overlays);
+    DemGround::new(terrain, &derated.hopper, derated.body.gravity, &derated.surface)
 }
 
 /// The friction of a scenario for the whole ground.

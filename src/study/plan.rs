@@ -2,9 +2,12 @@
 
 use std::io::{self, Write};
 
-use super::{Case, CaseError, Commands, JourneyError, Proof, SimulateError, dem_ground::dem_ground, journey::Searched};
+use super::{
+    Case, CaseError, Commands, Front, FrontWithoutErrors, JourneyError, Proof, SimulateError, dem_ground::dem_ground, front::front,
+    journey::Searched,
+};
 #[cfg(feature = "plot")]
-use crate::figure::{FigureError, FigureInput, FigureTitle, Picture, draw};
+use crate::figure::{Caption, FigureError, FigureInput, FigureTitle, FrontFigure, FrontPoint, Picture, Success, draw, draw_front};
 use crate::{
     chain::Station,
     graph,
@@ -12,7 +15,7 @@ use crate::{
     hop::HopTest,
     path::{Execution, HopPath, TooManyHops, Violation},
     progress::Progress,
-    report::{HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, path_geojson, write_path_csv},
+    report::{FrontRecord, HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, path_geojson, write_path_csv},
 };
 
 /// What is wanted beside the path.
@@ -24,6 +27,8 @@ pub struct PlanOptions {
     pub verify: bool,
     /// Whether the success of the path is estimated by fixed trials, where the scenario has errors.
     pub estimate: bool,
+    /// A front over the nodes of the search.
+    pub front: Option<Front>,
 }
 
 /// Why there is no plan. That there is no path is an answer, not an error.
@@ -33,6 +38,9 @@ pub enum PlanError {
     /// The case, the search or the proof.
     #[error(transparent)]
     Journey(#[from] JourneyError),
+    /// A front without errors.
+    #[error(transparent)]
+    Front(#[from] FrontWithoutErrors),
     /// A path of too many hops to list.
     #[error(transparent)]
     TooManyHops(#[from] TooManyHops),
@@ -105,14 +113,17 @@ pub struct Planned {
 /// [`PlanError`].
 pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Result<Planned, PlanError> {
     let case = case.with_commands(Commands::OfTheMachine)?;
+    if options.front.is_some() && case.scenario.uncertainty.is_none() {
+        return Err(FrontWithoutErrors.into());
+    }
     let (test, ends) = (case.hop_test(), case.ends()?);
     let searched = Searched::new(&test, ends, &case, options.proof, progress)?;
-    let (check, path) = searched.answer_with_path(&test, ends, (&case.prepared, &case.scenario.search));
+    let (check, path) = searched.answer_with_path(&test, ends, &case);
     let path = path?;
     if let Some(path) = path.as_ref().filter(|_| options.verify) {
         Defect::unless_passed(&case.prepared.execute(path, ends))?;
     }
-    let warnings = path.as_ref().map(|path| case.scenario.path_warnings(path)).unwrap_or_default();
+    let mut warnings = path.as_ref().map(|path| case.scenario.path_warnings(path)).unwrap_or_default();
     let flown = path.as_ref().filter(|_| options.estimate);
     let estimate = flown.map(|path| searched.success_estimate(&test, ends, &case, path, progress)).transpose()?.flatten();
     let mut hops = path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default();
@@ -121,12 +132,20 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
         (hop.margins_sigma, hop.success_estimated) = (Some(*margins), Some(*success));
     }
     let estimate = estimate.map(|estimate| estimate.success);
+    let front = match options.front {
+        None => None,
+        Some(Front::HopsRisk) => {
+            warnings.extend(case.scenario.uncertainty.as_ref().and_then(|keys| keys.warning()).map(str::to_owned));
+            Some(front(&case, (&test, ends), &searched, progress)?)
+        }
+    };
     let answer = PlanAnswer {
         check,
         verified: (options.verify && path.is_some()).then_some(true),
         path: hops,
         totals: path.as_ref().map(|path| TotalsRecord { estimate, ..TotalsRecord::from(&path.totals) }),
         reliable_paths: ReliablePathRecord::rows(&searched.reliable_paths),
+        front,
     };
     Ok(Planned { case, test, ends, found: searched.found, path, answer, warnings })
 }
@@ -179,5 +198,31 @@ impl Planned {
                 refusal: self.answer.check.commands_refusal.clone(),
             },
         })
+    }
+
+    /// The picture of the front; `None` if it was not wanted.
+    ///
+    /// # Errors
+    /// [`FigureError`].
+    #[cfg(feature = "plot")]
+    pub fn front_picture(&self) -> Option<Result<Picture, FigureError>> {
+        use super::captions::{SpeedLimit, title};
+
+        let (scenario, front) = (&self.case.scenario, self.answer.front.as_ref()?);
+        let mut line = vec![format!("from x = {:.3} m to x = {:.3} m", self.ends.0.point.x_m, self.ends.1.point.x_m)];
+        line.extend(scenario.body.name.clone());
+        line.extend(SpeedLimit::stated(&scenario.hopper).map(|limit| limit.to_string()));
+        line.extend(
+            front.first().map(|first| format!("each path estimated by {} fixed trials, policy {}", first.trials, first.policy)),
+        );
+        let point = |row: &FrontRecord| {
+            let [low, high] = row.success_estimated_ci95;
+            FrontPoint { hops: row.hops, success: Success { rate: row.success_estimated, low, high }, planned: row.planned }
+        };
+        Some(draw_front(&FrontFigure {
+            caption: Caption::new(title("Hops against reliability", scenario), line.join(", ")),
+            points: front.iter().map(point).collect(),
+            success_min: scenario.budget.estimated_success_min,
+        }))
     }
 }

@@ -122,7 +122,14 @@ impl Planned {
         };
         let warnings = path.as_ref().map(|path| case.scenario.path_warnings(path)).unwrap_or_default();
         let totals = path.as_ref().map(|path| TotalsRecord::from(&path.totals));
-        let answer = PlanAnswer { check, verified: path.is_some().then_some(true), path: rows, totals, reliable_paths: Vec::new() };
+        let answer = PlanAnswer {
+            check,
+            verified: path.is_some().then_some(true),
+            path: rows,
+            totals,
+            reliable_paths: Vec::new(),
+            front: None,
+        };
         Ok(Self { case, test, ends, found, path, answer, warnings })
     }
 }

@@ -1,6 +1,6 @@
 //! The least capability with which the goal can be reached.
 
-use super::{Case, CaseError, Commands, Variation, ask_the_same};
+use super::{Case, CaseError, Commands, JourneyError, Variation, ask_the_same, journey, require_success::SuccessSearch};
 use crate::{
     chain::Station,
     graph::{
@@ -10,7 +10,7 @@ use crate::{
     path::generate,
     progress::{Cancelled, Progress},
     quantity::Angle,
-    report::{GapRecord, HopRecord, RequireAnswer, RequireTry, TotalsRecord},
+    report::{DeratingRecord, GapRecord, HopRecord, RequireAnswer, RequireTry, SuccessBudgetRecord, TotalsRecord},
     scenario::{Entries, Key, Kind, Scenario, ScenarioProblem},
 };
 
@@ -47,15 +47,46 @@ const CAPABILITIES: [Capability; 12] = [
     capability("body.gravity_m_s2", false, 0.001, 30.0),
 ];
 
+/// All keys that change no path that exists, but how reliably it is flown: with a wanted success, the least capable value that has it.
+const OF_SUCCESS: [Capability; 13] = [
+    capability("uncertainty.takeoff_speed_sigma_m_s", false, 0.0, 10.0),
+    capability("uncertainty.takeoff_speed_sigma_fraction", false, 0.0, 1.0),
+    capability("uncertainty.takeoff_angle_sigma_deg", false, 0.0, 30.0),
+    capability("uncertainty.heading_sigma_deg", false, 0.0, 30.0),
+    capability("uncertainty.position_sigma_m", false, 0.0, 100.0),
+    capability("uncertainty.drift_along_sigma_m", false, 0.0, 100.0),
+    capability("uncertainty.drift_across_sigma_m", false, 0.0, 100.0),
+    capability("uncertainty.friction_sigma", false, 0.0, 1.0),
+    capability("uncertainty.height_sigma_m", false, 0.0, 10.0),
+    capability("uncertainty.goal_tolerance_m", true, 0.0, 100.0),
+    capability("derating.takeoff_speed", false, 0.1, 1.0),
+    capability("derating.landing_speed", false, 0.1, 1.0),
+    capability("derating.friction", false, 0.1, 1.0),
+];
+
 /// Why no least capability is found.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RequireError {
     /// A key for which more is not more.
-    #[error("{key}: found no key that makes a hopper more capable, expected one of {}", CAPABILITIES.map(|known| known.path).join(", "))]
+    #[error(
+        "{key}: found no key that makes a hopper more capable, expected one of {}; or, with a success wanted \
+         (budget.estimated_success_min), one of {}",
+        CAPABILITIES.map(|known| known.path).join(", "),
+        OF_SUCCESS.map(|known| known.path).join(", ")
+    )]
     UnknownKey {
         /// The key, as typed.
         key: String,
+    },
+    /// A key of reliability without a wanted success.
+    #[error(
+        "{key}: it changes how reliably paths are flown, not which exist, and found no success that is wanted: give \
+         budget.estimated_success_min, such as 0.9"
+    )]
+    NoSuccessWanted {
+        /// The key.
+        key: &'static str,
     },
     /// An empty range, or one beyond the values of the key.
     #[error("from and to: {0}")]
@@ -102,6 +133,9 @@ pub enum RequireError {
     /// A proof.
     #[error(transparent)]
     Search(#[from] SearchError),
+    /// The estimate of a success.
+    #[error(transparent)]
+    Journey(#[from] JourneyError),
 }
 
 impl From<Cancelled> for RequireError {
@@ -152,7 +186,7 @@ impl Requirement {
         budget_cells: usize,
         given_by: &str,
     ) -> Result<Self, RequireError> {
-        let capability = CAPABILITIES.into_iter().find(|capability| capability.path == key);
+        let capability = CAPABILITIES.into_iter().chain(OF_SUCCESS).find(|capability| capability.path == key);
         let capability = capability.ok_or_else(|| RequireError::UnknownKey { key: key.to_owned() })?;
         let is_given = from.is_some() && to.is_some();
         let (from, to) = (from.unwrap_or(capability.from), to.unwrap_or(capability.to));
@@ -205,6 +239,11 @@ impl Capability {
         self.path.split_once('.').and_then(|(table, name)| Key::find(table, name))
     }
 
+    /// Whether it changes only how reliably paths are flown.
+    fn is_of_success(&self) -> bool {
+        OF_SUCCESS.contains(self)
+    }
+
     /// The opposite limit of the machine, which the varied one may not cross.
     fn opposite_limit(&self, case: &Case) -> Option<f64> {
         let limits = case.scenario.hopper.limits();
@@ -254,6 +293,10 @@ pub struct Required {
 /// Finds the least capable value with which the goal can be reached, between a value proved insufficient and a value with a path. The
 /// first case of the variation is that of [`Requirement::strongest`].
 ///
+/// Of a scenario with a budget of success: the least capable value found whose estimated success is enough. Nothing is proved then, since
+/// success need not grow with a capability: nine values are scanned, then the first that is enough and the one before are brought together,
+/// on the same draws at every value.
+///
 /// # Errors
 /// [`RequireError`].
 pub fn require(variation: &Variation, requirement: &Requirement, progress: &dyn Progress) -> Result<Required, RequireError> {
@@ -265,10 +308,17 @@ pub fn require(variation: &Variation, requirement: &Requirement, progress: &dyn 
     let (from, to) = (weakest.min(strongest), weakest.max(strongest));
     let range = CapabilityRange { weakest, strongest, resolution: *resolution };
     let ends = first.ends()?;
+    let wanted = first.scenario.budget.estimated_success_min;
+    if wanted.is_none() && capability.is_of_success() {
+        return Err(RequireError::NoSuccessWanted { key: capability.path });
+    }
     capability.check(first)?;
     let last = requirement.at(variation, weakest)?;
     if ask_the_same((&first.scenario, &first.prepared), (&last.scenario, &last.prepared)) {
         return Err(RequireError::NoEffect { key: capability.path, from, to });
+    }
+    if let Some(wanted) = wanted {
+        return require_success(variation, requirement, (range, wanted), progress);
     }
     let mut tries: Vec<Tried> = Vec::new();
     let mut verdict_at = |value| {
@@ -294,6 +344,8 @@ pub fn require(variation: &Variation, requirement: &Requirement, progress: &dyn 
         hops: None,
         path: Vec::new(),
         totals: None,
+        success: None,
+        derating: DeratingRecord::of(&first.scenario.derating),
         gap: at(threshold.unreachable_at).map(|tried| tried.gap(requirement, progress)).transpose()?.flatten(),
     };
     let reached = at(threshold.reachable_at);
@@ -308,6 +360,62 @@ pub fn require(variation: &Variation, requirement: &Requirement, progress: &dyn 
         answer,
         warnings: first.prepared.warnings.clone(),
     })
+}
+
+/// The least capable value whose estimated success is enough.
+fn require_success(
+    variation: &Variation,
+    requirement: &Requirement,
+    (range, wanted): (CapabilityRange, f64),
+    progress: &dyn Progress,
+) -> Result<Required, RequireError> {
+    let Requirement { capability, resolution, .. } = requirement;
+    let first = &variation.first;
+    let ends = first.ends()?;
+    let mut search = SuccessSearch::new(range, wanted);
+    search.run(&mut |value| estimated(&requirement.at(variation, value)?, ends, progress), progress)?;
+    let reached = search.least();
+    let mut answer = RequireAnswer {
+        start_x_m: ends.0.point.x_m,
+        goal_x_m: ends.1.point.x_m,
+        vary: capability.path.to_owned(),
+        unreachable_at: None,
+        reachable_at: reached.map(|tried| tried.value),
+        from: range.weakest.min(range.strongest),
+        to: range.weakest.max(range.strongest),
+        resolution: *resolution,
+        resolution_met: search.is_met(),
+        never_binds: false,
+        tries: Vec::new(),
+        hops: reached.and_then(|tried| tried.hops),
+        path: Vec::new(),
+        totals: None,
+        success: Some(search.record()),
+        derating: DeratingRecord::of(&first.scenario.derating),
+        gap: None,
+    };
+    let value = answer.reachable_at.unwrap_or(range.strongest);
+    let shown = requirement.at(variation, value)?;
+    if answer.reachable_at.is_some() {
+        let (test, options) = (shown.hop_test(), &shown.scenario.search);
+        if let Outcome::Path { legs, .. } = journey::search(&test, ends, &shown, progress)?.found.outcome
+            && let Ok(path) = generate(&test, &legs, options.takeoff, options.split)
+        {
+            answer.path = HopRecord::rows(&path, shown.prepared.projection.as_ref());
+            answer.totals = Some(TotalsRecord::from(&path.totals));
+        }
+    }
+    Ok(Required {
+        shown,
+        shown_entries: requirement.with_value(&variation.entries, value),
+        answer,
+        warnings: first.prepared.warnings.clone(),
+    })
+}
+
+/// The hops and the estimated success of a case's path; `None` without a path.
+fn estimated(case: &Case, ends: (Station, Station), progress: &dyn Progress) -> Result<Option<SuccessBudgetRecord>, RequireError> {
+    Ok(journey::search(&case.hop_test(), ends, case, progress)?.success)
 }
 
 /// The chain at one value, with its bounds.

@@ -1,10 +1,10 @@
 //! Varies one or two keys of a scenario over a grid, with the answer in every cell.
 
-use std::{collections::BTreeMap, path::Path, sync::Arc};
+use std::{collections::BTreeMap, ops::ControlFlow, path::Path};
 
 use rayon::prelude::*;
 
-use super::{PipelineError, Prepared, Survey, ask_the_same, physics::escape_warnings};
+use super::{Case, CaseError, Commands, JourneyError, PipelineError, Survey, ask_the_same, journey, physics::escape_warnings};
 use crate::{
     chain::Station,
     graph::{
@@ -14,7 +14,7 @@ use crate::{
     },
     hop::HopTest,
     path::HopPath,
-    progress::{Cancelled, Detail, Meter, Progress, Stage},
+    progress::{Cancelled, Detail, Meter, Progress, Stage, Step},
     report::{EffortRecord, MarginsRecord, SweptKeyRecord, TotalsRecord, TradeAnswer, TradeRow},
     scenario::{Entries, Key, Kind, Scenario, ScenarioProblem, fits, nearest_key},
 };
@@ -137,6 +137,18 @@ pub enum CellError {
     /// The search.
     #[error(transparent)]
     Search(#[from] SearchError),
+    /// The estimate of a success.
+    #[error(transparent)]
+    Journey(#[from] JourneyError),
+}
+
+impl From<CaseError> for CellError {
+    fn from(error: CaseError) -> Self {
+        match error {
+            CaseError::Prepare(error) => error.into(),
+            other => Self::Journey(other.into()),
+        }
+    }
 }
 
 /// The answers of all cells.
@@ -286,6 +298,15 @@ fn verdict_of(
     Ok((Varied { verdict: bounds.verdict(), hops: bounds.upper(), lower_bound: Some(bounds.lower) }, bounds.answer))
 }
 
+/// Parts of the work of a cell, which are not reported, and end with it.
+struct Unreported<'m, 'p>(&'m Meter<'p>);
+
+impl Progress for Unreported<'_, '_> {
+    fn report(&self, _: &Step) -> ControlFlow<()> {
+        if self.0.check().is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
 /// A scenario, its terrain and its swept keys.
 #[derive(Clone, Debug)]
 pub struct Trade<'a> {
@@ -363,28 +384,37 @@ impl<'a> Trade<'a> {
         Scenario::new(varied(self.entries, self.swept, values, "varied")).map_err(|problems| CellError::Scenario { problems })
     }
 
-    /// The scenario of a cell and its chain.
-    fn prepared(&self, values: &[f64]) -> Result<(Scenario, Prepared), CellError> {
+    /// The case of a cell.
+    fn case(&self, values: &[f64]) -> Result<Case, CellError> {
         let scenario = self.scenario(values)?;
         // The one number that changes how the terrain is read.
         let rereads = self.swept.iter().any(|v| (v.key.table, v.key.name) == ("terrain", "mesh_scale"));
-        let prepared = match scenario.terrain.as_ref().filter(|_| rereads) {
-            Some(source) => Survey::of(&scenario, source, self.base).and_then(|survey| survey.prepare(&scenario)),
-            None => self.survey.prepare(&scenario),
-        };
-        Ok((scenario, prepared?))
+        let reread = scenario.terrain.as_ref().filter(|_| rereads).map(|source| Survey::of(&scenario, source, self.base));
+        let reread = reread.transpose()?;
+        Ok(Case::over(reread.as_ref().unwrap_or(self.survey), scenario, self.base, Commands::OfTheMachine)?)
     }
 
     /// One cell.
     fn row(&self, values: &[f64], proof_budget_cells: Option<usize>, meter: &Meter<'_>) -> Result<TradeRow, CellError> {
-        let (scenario, prepared) = self.prepared(values)?;
+        let case = self.case(values)?;
+        let Case { scenario, prepared, .. } = &case;
         let ends = prepared.start.zip(prepared.goal).ok_or(CellError::NoEnds)?;
-        let above_escape = !escape_warnings(&scenario, Some(prepared.chain.geometry())).is_empty();
+        let above_escape = !escape_warnings(scenario, Some(prepared.chain.geometry())).is_empty();
         let distance_m = (ends.1.point.x_m - ends.0.point.x_m).abs();
-        let test = HopTest::new(Arc::clone(&prepared.chain));
-        let (answer, found) = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter)?;
+        let test = case.hop_test();
+        let (mut answer, mut found) = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter)?;
+        let mut success_budget = None;
+        if scenario.budget.estimated_success_min.is_some() && answer.hops.is_some() {
+            let searched = journey::search(&test, ends, &case, &Unreported(meter))?;
+            (found, success_budget) = (searched.found, searched.success);
+            answer.hops = found.hops().filter(|_| success_budget.is_none_or(|budget| budget.met));
+            if answer.hops.is_none() {
+                answer.verdict = ProofVerdict::Open;
+            }
+        }
+        let has_path = answer.hops.is_some();
         let effort = scenario.search.effort;
-        let path = self.exact_path(&scenario, &prepared, &found);
+        let path = if has_path { self.exact_path(&case, &found) } else { None };
         Ok(TradeRow {
             values: self.named(values),
             verdict: Some(answer.verdict),
@@ -400,22 +430,22 @@ impl<'a> Trade<'a> {
             totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
             margins: path.as_ref().and_then(MarginsRecord::of),
             effort: match &found.outcome {
-                Outcome::Path { cost, .. } => Some(EffortRecord::new(effort, cost.effort())),
-                Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
+                Outcome::Path { cost, .. } if has_path => Some(EffortRecord::new(effort, cost.effort())),
+                Outcome::Path { .. } | Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
             },
+            success_budget,
             error: None,
         })
     }
 
     /// The path found, with exact commands; `None` without one, or if it has too many hops to list.
-    fn exact_path(&self, scenario: &Scenario, prepared: &Prepared, found: &Answer) -> Option<HopPath> {
+    fn exact_path(&self, case: &Case, found: &Answer) -> Option<HopPath> {
         let Outcome::Path { legs, .. } = &found.outcome else { return None };
-        let hopper = scenario.hopper.with_any_command();
-        let is_exact = hopper.limits() == scenario.hopper.limits();
-        let exact = || self.survey.prepare(&Scenario { hopper, ..scenario.clone() }).ok();
+        let is_exact = case.scenario.hopper.with_any_command().limits() == case.scenario.hopper.limits();
+        let exact = || Case::over(self.survey, case.scenario.clone(), self.base, Commands::Exact).ok();
         let exact = if is_exact { None } else { Some(exact()?) };
-        let prepared = exact.as_ref().unwrap_or(prepared);
-        prepared.path(&HopTest::new(Arc::clone(&prepared.chain)), legs, &scenario.search).ok()
+        let case = exact.as_ref().unwrap_or(case);
+        case.planning().path(&case.hop_test(), legs, &case.scenario.search).ok()
     }
 
     /// Whether any answer depends on a key: neighbouring cells along it are compared until two differ.
@@ -432,7 +462,7 @@ impl<'a> Trade<'a> {
                 };
                 meter.report(Detail::None)?;
                 // What is refused for some values depends on them, or no cell has an answer.
-                let Ok((scenario, prepared)) = self.prepared(&values) else { return Ok(()) };
+                let Ok(Case { scenario, prepared, .. }) = self.case(&values) else { return Ok(()) };
                 if before.as_ref().is_some_and(|(s, p)| !ask_the_same((s, p), (&scenario, &prepared))) {
                     return Ok(());
                 }

@@ -27,6 +27,11 @@ impl Overlays {
         Self { friction, keep_out }
     }
 
+    /// The same overlays, of whose friction a share counts.
+    pub(crate) fn with_friction_share(&self, share: f64) -> Self {
+        Self { friction: self.friction.as_ref().map(|raster| raster.with_share(share)), keep_out: self.keep_out.clone() }
+    }
+
     /// The friction raster.
     pub const fn friction(&self) -> Option<&FrictionRaster> {
         self.friction.as_ref()

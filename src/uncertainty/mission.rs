@@ -40,6 +40,8 @@ pub(super) enum MissionGround {
 pub(super) struct Replanning {
     pub(super) test: HopTest,
     pub(super) to_go: Arc<CostToGo>,
+    /// The ground under the limits that planning may use, over a DEM; `None`: that of the trials.
+    pub(super) over: Option<DemGround>,
 }
 
 impl Mission {
@@ -69,7 +71,7 @@ impl Mission {
                 write!(digest, "{:?}{:?}{friction:?}{keep_out:?}{:?}", ground.envelope(), ground.surface(), ground.terrain().dem())
             }
         };
-        if let Some(Replanning { test, to_go }) = &self.replanning {
+        if let Some(Replanning { test, to_go, over: _ }) = &self.replanning {
             let _ = chain_text(&mut digest, test);
             let _ = write!(digest, "{to_go:?}");
         }
@@ -79,7 +81,16 @@ impl Mission {
     /// The same mission, whose trials may also be replanned over nodes of this chain.
     #[must_use]
     pub fn with_replanning(self, test: HopTest, to_go: Arc<CostToGo>) -> Self {
-        Self { replanning: Some(Replanning { test, to_go }), ..self }
+        Self { replanning: Some(Replanning { test, to_go, over: None }), ..self }
+    }
+
+    /// The same mission, replanned over this ground of a DEM, whose limits planning may use; without replanning, unchanged.
+    #[must_use]
+    pub fn planned_over(mut self, ground: DemGround) -> Self {
+        if let Some(replanning) = &mut self.replanning {
+            replanning.over = Some(ground);
+        }
+        self
     }
 }
 

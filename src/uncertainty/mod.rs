@@ -72,7 +72,7 @@ pub use paired::PairedDifference;
 pub use quantiles::QuantileSketch;
 pub use record::{HopRecord, Trajectory, TrialRecord};
 pub use scatter::HopScatter;
-pub use simulation::{FlightEnd, Simulation};
+pub use simulation::{ESTIMATE_TRIALS, FlightEnd, Simulation};
 pub use summary::{ErrorSummary, LandingEllipse, LandingSummary, RatePoint, Summary};
 pub use tally::{MergeProblem, Tally};
 pub use wilson::Wilson;

@@ -25,6 +25,9 @@ use crate::{
 /// The success rate is checked after this many trials.
 const BATCH: u64 = 1000;
 
+/// The fixed trials that estimate the success of a path.
+pub const ESTIMATE_TRIALS: u64 = 512;
+
 /// Trials that one thread flies in one task: a batch then employs twenty threads, and the overhead per task is negligible.
 const STRETCH: u64 = 50;
 
@@ -159,11 +162,16 @@ impl Simulation {
     /// # Errors
     /// As [`run`](Self::run).
     pub fn estimated_success(&self, options: &TrialOptions, progress: &dyn Progress) -> Result<f64, SimulationError> {
-        const TRIALS: u64 = 512;
         /// Apart from the seeds that users give.
         const SEED: u64 = 0x6368_7461;
-        let fixed =
-            TrialOptions { trials: TRIALS, seed: SEED, first_trial: 0, until_half_width: None, trajectories: 0, ..*options };
+        let fixed = TrialOptions {
+            trials: ESTIMATE_TRIALS,
+            seed: SEED,
+            first_trial: 0,
+            until_half_width: None,
+            trajectories: 0,
+            ..*options
+        };
         Ok(self.run(&fixed, &mut (), progress)?.success.rate)
     }
 
@@ -334,7 +342,7 @@ fn chain_plan(mission: &Mission) -> Result<Plan<ChainPosition>, SimulationError>
         Ok(PlannedHop { from, command: command(hop, heading_of(hop.direction), aim) })
     });
     let hops = planned.collect::<Result<_, SimulationError>>()?;
-    let replan = mission.replanning.as_ref().map(|Replanning { test, to_go }| {
+    let replan = mission.replanning.as_ref().map(|Replanning { test, to_go, .. }| {
         let replan = ChainReplan { test: test.clone(), to_go: Arc::clone(to_go) };
         Box::new(replan) as _
     });
@@ -363,11 +371,15 @@ fn map_plan(mission: &Mission, ground: &DemGround) -> Result<Plan<MapPosition>, 
         Ok(position)
     };
     let (start, goal) = (on_ground(&mission.start, MissionPoint::Start)?, on_ground(&mission.goal, MissionPoint::Goal)?);
-    let replan = mission.replanning.as_ref().map(|Replanning { test, to_go }| {
+    let replan = mission.replanning.as_ref().map(|Replanning { test, to_go, over }| {
         let stations = to_go.nodes().stations().iter();
         let node = |station| on_ground(&test.chain().contact_point(station), MissionPoint::Node);
         let nodes = stations.map(node).collect::<Result<_, _>>()?;
-        Ok::<_, SimulationError>(Box::new(MapReplan { ground: ground.clone(), to_go: Arc::clone(to_go), nodes }) as _)
+        Ok::<_, SimulationError>(Box::new(MapReplan {
+            ground: over.as_ref().unwrap_or(ground).clone(),
+            to_go: Arc::clone(to_go),
+            nodes,
+        }) as _)
     });
     Ok(Plan { start, goal: goal.at, hops, replan: replan.transpose()? })
 }

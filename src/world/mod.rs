@@ -1,6 +1,7 @@
 //! The body hopped on, the hopper, and the grip of the ground.
 
 mod body;
+mod derating;
 mod friction_cone;
 mod gravity;
 mod hopper;
@@ -13,6 +14,7 @@ mod surface;
 mod travel;
 
 pub use body::{Body, KNOWN_BODIES};
+pub use derating::Derating;
 pub use friction_cone::{FrictionCone, InvalidFriction};
 pub use gravity::{Gravity, InvalidGravity, InvalidRadius};
 pub use hopper::{ClearanceRule, Hopper, HopperLimits, HopperProblem, InvalidHopper};

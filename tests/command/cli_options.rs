@@ -350,7 +350,13 @@ const CHECK: [Trial; 16] = [
     ("--quiet", &["check", "scenario.toml", "--body", "bennu"], &["check", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-const PLAN: [Trial; 20] = [
+const PLAN: [Trial; 22] = [
+    ("--front", &["plan", "errors.toml"], &["plan", "errors.toml", "--front", "hops,risk"]),
+    (
+        "--plot-front",
+        &["plan", "errors.toml", "--front", "hops,risk"],
+        &["plan", "errors.toml", "--front", "hops,risk", "--plot-front", "front.svg"],
+    ),
     ("--trajectory", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--trajectory", "t.csv"]),
     (
         "--step-s",
@@ -391,7 +397,12 @@ const MAN: [Trial; 1] = [("--output", &["man", "-o", "pages"], &["man", "-o", "e
 const REQUIRED: [&str; 10] =
     ["require", "scenario.toml", "--vary", "surface.friction_coefficient", "--from", "0.03", "--to", "2", "--resolution", "0.05"];
 
-const REQUIRE: [Trial; 17] = [
+const REQUIRE: [Trial; 18] = [
+    (
+        "--success-min",
+        &["require", "errors.toml", "--vary", "hopper.takeoff_speed_max_m_s", "--from", "3", "--to", "12"],
+        &["require", "errors.toml", "--vary", "hopper.takeoff_speed_max_m_s", "--from", "3", "--to", "12", "--success-min", "0.2"],
+    ),
     (
         "--start",
         &REQUIRED,

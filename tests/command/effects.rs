@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 80] = [
+const TELLING: [(&str, &str); 84] = [
     ("body.name", "earth"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -68,6 +68,10 @@ const TELLING: [(&str, &str); 80] = [
     ("search.split", "equal"),
     ("search.risk", "fewest-hops"),
     ("search.risk_extra_hops_max", "2"),
+    ("budget.estimated_success_min", "1"),
+    ("derating.takeoff_speed", "0.5"),
+    ("derating.landing_speed", "0.5"),
+    ("derating.friction", "0.5"),
     ("uncertainty.takeoff_speed_sigma_m_s", "0.3"),
     ("uncertainty.takeoff_speed_sigma_fraction", "0.2"),
     ("uncertainty.takeoff_angle_sigma_deg", "9"),

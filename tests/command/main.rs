@@ -40,6 +40,7 @@ mod shipped_scenarios;
 mod simulate_command;
 mod stated_maps;
 mod studies;
+mod success;
 mod takeoff_speeds;
 mod trade_compare;
 mod trajectory;

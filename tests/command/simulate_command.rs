@@ -100,8 +100,8 @@ fn trials_without_errors_give_a_warning() {
     }
     let ran = desk.run(&["run", "zeros.toml", "-o", "out"]);
     assert_eq!((ran.status, ran.stderr.matches(warning).count()), (0, 1), "{}", ran.stderr);
-    let risk = desk.run(&["simulate", "zeros.toml", "--experiment", "risk-trade"]);
-    assert_eq!((risk.status, risk.stderr.matches(warning).count()), (0, 1), "{}", risk.stderr);
+    let front = desk.run(&["plan", "zeros.toml", "--front", "hops,risk"]);
+    assert_eq!((front.status, front.stderr.matches(warning).count()), (0, 1), "{}", front.stderr);
     for set in ["uncertainty.takeoff_angle_sigma_deg=0.1", "uncertainty.friction_sigma=0.01"] {
         let ran = desk.run(&["simulate", "scenario.toml", "--trials", "20", "--set", set]);
         assert!(!ran.stderr.contains(warning) && ran.stderr.contains("goal_tolerance_m is 0 or absent"), "{set}: {}", ran.stderr);
@@ -214,7 +214,7 @@ fn invalid_options_are_refused_by_name() {
     refused(&["--experiment", "worst-drfit"], &["worst-drfit", "the nearest is worst-drift"]);
     refused(&["--experiment", "worst-drift", "--reading", "noise"], &["noise-at-landing"]);
     refused(&["--experiment", "worst-drift", "--trials", "5"], &["--trials has no effect", "worst-drift"]);
-    refused(&["--experiment", "risk-trade", "--policy", "replan"], &["risk-trade", "--policy open-loop"]);
+    refused(&["--experiment", "risk-trade"], &["risk-trade is now chta plan --front hops,risk"]);
     refused(&["-o", "landings.txt"], &["landings.txt", ".csv", ".parquet"]);
     refused(&["--plot", "trials.gif"], &["trials.gif", ".svg"]);
     refused(&["--plot-map", "landings.svg"], &["--plot-map", "DEM"]);
@@ -341,20 +341,26 @@ fn replanning_weighs_risk_as_the_plan_does() {
     }
 }
 
+/// The ends of the front, flown in trials of another seed: the path of more hops is the more reliable one, as estimated.
 #[test]
 fn a_more_reliable_path_is_flown_more_reliably() {
     let scenario = shipped("rolling_surely.toml");
-    let document = Desk::new().json(&["simulate", &scenario, "--experiment", "risk-trade", "--trials", "1000"]);
-    let paths = document["paths"].as_array().unwrap();
-    let interval = |path: &Value| [0, 1].map(|i| number(&path["success_rate_ci95"][i]));
-    let (plain, reliable) = (&paths[0], paths.last().unwrap());
-    assert_eq!(paths[1]["hops"], plain["hops"], "the most reliable of those with the fewest hops");
-    assert!(interval(&paths[1])[0] > interval(plain)[1], "{} beside {plain}", paths[1]);
-    assert!(reliable["hops"].as_u64() > plain["hops"].as_u64());
-    assert!(interval(reliable)[0] > interval(&paths[1])[1], "{reliable} beside {}", paths[1]);
-    // The scenario asks for the most reliable path.
-    let flown = Desk::new().json(&["simulate", &scenario, "--trials", "1000"]);
-    assert_eq!((&flown["hops"], &flown["success_rate"]), (&reliable["hops"], &reliable["success_rate"]));
+    let document = Desk::new().json(&["plan", &scenario, "--front", "hops,risk"]);
+    let front = document["front"].as_array().unwrap();
+    let flown = |hops: &Value, risk: &str| {
+        let settings = [format!("search.risk={risk}"), format!("budget.estimated_success_min={}", hops["success_estimated"])];
+        let words = ["simulate", &scenario, "--trials", "1000", "--seed", "5", "--set", &settings[0], "--set", &settings[1]];
+        let document = Desk::new().json(&words);
+        assert_eq!(document["hops"], hops["hops"]);
+        [0, 1].map(|i| number(&document["success_rate_ci95"][i]))
+    };
+    let (first, last) = (&front[0], front.last().unwrap());
+    let (fewest, most) = (flown(first, "fewest-hops"), flown(last, "traded"));
+    assert!(fewest[1] < most[0], "{fewest:?} beside {most:?}");
+    for (row, [low, high]) in [(first, fewest), (last, most)] {
+        let estimate = [0, 1].map(|i| number(&row["success_estimated_ci95"][i]));
+        assert!(estimate[0] <= high && low <= estimate[1], "{row} flown {low} to {high}");
+    }
 }
 
 /// The estimate of a plan is that of its policy, whether or not the choice of the path weighs risk: 512 fixed trials are within 0.06 of the

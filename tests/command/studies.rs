@@ -11,9 +11,9 @@ use chta::{
     report::DocumentKind,
     scenario::{Entries, Scenario},
     study::{
-        Case, CaseError, CheckError, Commands, ExperimentError, HopError, JourneyEnd, PlanOptions, Proof, RequireError,
-        Requirement, SimulateOptions, SweptKey, Trade, Trials, Variation, check, check_pairs, compare, experiment, hop, plan,
-        require, simulate, trade,
+        Case, CaseError, CheckError, Commands, ExperimentError, Front, HopError, JourneyEnd, PlanError, PlanOptions, Proof,
+        RequireError, Requirement, SimulateOptions, SweptKey, Trade, Trials, Variation, check, check_pairs, compare, experiment,
+        hop, plan, require, simulate, trade,
     },
     uncertainty::experiments::{DriftReading, Experiment},
 };
@@ -175,21 +175,56 @@ fn experiments_answer_as_the_command() {
     for which in Experiment::ALL {
         let case = case("rolling_surely", &settings, Commands::OfTheMachine);
         let planned = plan(&case, PlanOptions::default(), &()).unwrap();
-        let run = experiment(&planned, which, DriftReading::default(), &()).unwrap();
-        let answer = run.answer.unwrap();
-        let study = of_study(&case, "simulate-experiment", &run.warnings, &answer);
+        let answer = experiment(&planned, which, DriftReading::default(), &()).unwrap().unwrap();
+        let study = of_study(&case, "simulate-experiment", &[], &answer);
         assert_eq!(study, of_command("simulate", "rolling_surely", &settings, &["--experiment", which.name()]));
     }
-    let refused = |name, settings: &[&str]| {
-        let planned = plan(&case(name, settings, Commands::OfTheMachine), PlanOptions::default(), &()).unwrap();
-        experiment(&planned, Experiment::RiskTrade, DriftReading::default(), &()).unwrap_err()
-    };
-    let replans = refused("rolling_surely", &["uncertainty.policy=replan"]);
-    assert!(matches!(replans, ExperimentError::Replans), "{replans}");
-    let errorless = refused("simple", &[]);
+    let planned = plan(&case("simple", &[], Commands::OfTheMachine), PlanOptions::default(), &()).unwrap();
+    let errorless = experiment(&planned, Experiment::Sensitivity, DriftReading::default(), &()).unwrap_err();
     assert!(matches!(errorless, ExperimentError::NoUncertainty { .. }), "{errorless}");
     let wall = plan(&case("wall", &[], Commands::OfTheMachine), PlanOptions::default(), &()).unwrap();
-    assert!(experiment(&wall, Experiment::WorstDrift, DriftReading::default(), &()).unwrap().answer.is_none());
+    assert!(experiment(&wall, Experiment::WorstDrift, DriftReading::default(), &()).unwrap().is_none());
+}
+
+/// Each row improves on those with fewer hops, and one of them is the path of the plan where the scenario weighs risk.
+#[test]
+fn fronts_answer_as_the_command_and_improve_strictly() {
+    let options = PlanOptions { front: Some(Front::HopsRisk), ..PlanOptions::default() };
+    // The settings, and whether the plan is a path of the front.
+    let cases: [(&[&str], bool); 4] = [
+        (&[], true),
+        (&["search.risk=\"fewest-hops\""], true),
+        (&["search.risk=\"ignored\"", "search.takeoff_angle=\"least-speed\""], false),
+        (&["uncertainty.policy=\"replan\"", "search.risk_extra_hops_max=2"], true),
+    ];
+    for (settings, is_on_it) in cases {
+        let case = case("rolling_surely", settings, Commands::OfTheMachine);
+        let planned = plan(&case, options, &()).unwrap();
+        let study = of_study(&case, "plan", &planned.warnings, &planned.answer);
+        assert_eq!(study, of_command("plan", "rolling_surely", settings, &["--front", "hops,risk"]), "{settings:?}");
+        let front = planned.answer.front.as_deref().unwrap();
+        assert!(front.len() > 1, "{settings:?}: {front:?}");
+        for pair in front.windows(2) {
+            let improves = pair[0].hops < pair[1].hops && pair[0].success_estimated < pair[1].success_estimated;
+            assert!(improves, "{settings:?}: {pair:?}");
+        }
+        for row in front {
+            let [low, high] = row.success_estimated_ci95;
+            assert!(low <= row.success_estimated && row.success_estimated <= high && row.trials == 512, "{row:?}");
+            assert_eq!(row.policy, case.scenario.uncertainty.as_ref().unwrap().policy);
+        }
+        let chosen: Vec<_> = front.iter().filter(|row| row.planned).collect();
+        assert_eq!(chosen.len(), usize::from(is_on_it), "{settings:?}: {front:?}");
+        for row in chosen {
+            assert_eq!((Some(row.hops), Some(row.totals)), (planned.answer.check.hops, planned.answer.totals));
+        }
+        assert_eq!(planned.front_picture().unwrap().unwrap().to_svg().unwrap().matches("estimated success").count(), 1);
+    }
+    let errorless = plan(&case("simple", &[], Commands::OfTheMachine), options, &()).unwrap_err();
+    assert!(matches!(errorless, PlanError::Front(_)) && errorless.to_string().contains("[uncertainty]"), "{errorless}");
+    let wall =
+        plan(&case("wall", &["uncertainty.takeoff_speed_sigma_fraction=0.1"], Commands::OfTheMachine), options, &()).unwrap();
+    assert_eq!((wall.is_traversable(), wall.answer.front.map(|front| front.len())), (false, Some(0)));
 }
 
 #[test]

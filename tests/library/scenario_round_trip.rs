@@ -89,6 +89,11 @@ fn toml() -> impl Strategy<Value = String> {
             // Both or neither; a heading error only on a raster.
             ("uncertainty", "height_sigma_m" | "height_correlation_m") => degrees,
             ("uncertainty", "heading_sigma_deg" | "heading_bias_sigma_deg") => ground < 2,
+            // A budget of success without errors, and shares that leave too little for other keys, are refused.
+            ("budget", _) => degrees && !points,
+            ("derating", "takeoff_speed") => points,
+            ("derating", "landing_speed") => points && degrees,
+            ("derating", "friction") => friction,
             ("search", "risk_extra_hops_max") => false,
             ("search", "points_per_segment") | ("hopper", "roughness_max_m" | "takeoff_speed_max_m_s") => points,
             ("search", "node_spacing_max_m") => !points,
@@ -191,6 +196,7 @@ fn every_key_reaches_the_document() {
         let mut entries = Entries::from_toml("body.gravity_m_s2 = 1\n");
         let mut with = |table: &str, name: &str, value: &str| entries.set("test", &format!("{table}.{name}={value}"));
         match (key.table, key.name) {
+            ("budget", _) => with("uncertainty", "goal_tolerance_m", "1"),
             ("surface", "takeoff_from_slope_deg") => with("surface", "landing_from_slope_deg", "[1, 2]"),
             ("surface", "landing_from_slope_deg") => with("surface", "takeoff_from_slope_deg", "[1, 2]"),
             ("terrain", "dem" | "start_m" | "goal_m" | "via_m" | "via_lonlat_deg") => {

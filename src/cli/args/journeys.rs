@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use chta::{
     graph::proof::DEFAULT_BUDGET_CELLS,
-    study::{Case, SimulateOptions},
+    study::{Case, Front, SimulateOptions},
     uncertainty::experiments::{DriftReading, Experiment},
 };
 use clap::Args as ClapArgs;
@@ -116,6 +116,13 @@ pub(crate) struct PlanArgs {
     /// Fly the path again by direct simulation and check every limit
     #[arg(long)]
     pub(crate) verify: bool,
+    /// Front of two amounts over the same nodes: hops,risk, the most reliable path for every number of hops, with its success
+    /// estimated by 512 fixed trials under the scenario's policy; needs [uncertainty]
+    #[arg(long, value_name = "AMOUNTS")]
+    pub(crate) front: Option<String>,
+    /// Picture of the front (SVG or PNG) to write
+    #[arg(long, value_name = "FILE", requires = "front")]
+    pub(crate) plot_front: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) trajectory: TrajectoryArgs,
     #[command(flatten)]
@@ -162,8 +169,8 @@ pub(crate) struct SimulateArgs {
     /// Tally of the trials (JSON) to write, which the library merges with those of other ranges
     #[arg(long, value_name = "FILE", conflicts_with_all = ["experiment", "compare"])]
     pub(crate) tally: Option<PathBuf>,
-    /// Experiment to run instead: worst-drift (the paper's), cone-width (the paper's claim), risk-trade (hops against
-    /// reliability), sensitivity (what each error costs) [default: none]
+    /// Experiment to run instead: worst-drift (the paper's), cone-width (the paper's claim), sensitivity (what each error
+    /// costs) [default: none]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["compare", "until_half_width"])]
     pub(crate) experiment: Option<String>,
     /// How worst-drift interprets the paper: noise-at-landing, noise-in-flight, farthest-from-goal [default: noise-at-landing]
@@ -206,6 +213,10 @@ pub(crate) struct RequireArgs {
     /// Greatest value to try, in the key's unit [default: by key]
     #[arg(long, value_name = "V", allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
+    /// Success wanted, 0 to 1: the least value whose success, estimated by 512 fixed trials, is at least P; also keys of
+    /// `[uncertainty]` and `[derating]` can then be varied [default: the scenario's `budget.estimated_success_min`, else any]
+    #[arg(long, value_name = "P", allow_negative_numbers = true)]
+    pub(crate) success_min: Option<f64>,
     /// How close to bring the two values, as a fraction of them
     #[arg(long, value_name = "SHARE", default_value_t = 0.001, allow_negative_numbers = true)]
     pub(crate) resolution: f64,
@@ -283,6 +294,24 @@ pub(crate) struct CompareArgs {
     pub(crate) quiet: bool,
 }
 
+impl RequireArgs {
+    /// The scenario key set by an option of its own.
+    pub(crate) fn own_keys(&self) -> Vec<OwnKey<'static>> {
+        self.success_min.map(|least| ("--success-min", "budget", "estimated_success_min", least.into())).into_iter().collect()
+    }
+}
+
+impl PlanArgs {
+    /// The front by its amounts.
+    pub(crate) fn front(&self) -> Result<Option<Front>, Failure> {
+        let Some(given) = self.front.as_deref() else { return Ok(None) };
+        let found = Front::ALL.into_iter().find(|front| front.name() == given);
+        let possible = || Front::ALL.map(Front::name).join(", or ");
+        let none = || Failure::message(format!("--front: found '{given}', expected {}: no other front is planned yet", possible()));
+        found.ok_or_else(none).map(Some)
+    }
+}
+
 impl SimulateArgs {
     /// The scenario keys set by the options of trials; they are checked and written as keys of the scenario.
     pub(crate) fn own_keys(&self) -> Vec<OwnKey<'static>> {
@@ -328,6 +357,12 @@ impl SimulateArgs {
                 format!("--trajectory: the experiment {name} flies no nominal path: omit one of --trajectory and --experiment");
             return Err(Failure::message(message));
         }
+        if name == "risk-trade" {
+            // Its name of old.
+            return Err(Failure::message(
+                "--experiment risk-trade is now chta plan --front hops,risk: give that command, expected here worst-drift or cone-width",
+            ));
+        }
         let experiment = named(&Experiment::ALL, Experiment::name, name, "--experiment")?;
         let reading = self.reading.as_deref().map(|reading| named(&DriftReading::ALL, DriftReading::name, reading, "--reading"));
         let reading = reading.transpose()?.unwrap_or_default();
@@ -338,7 +373,6 @@ impl SimulateArgs {
             ("--trials", self.trials.is_some() && !flies),
             ("--policy", self.policy.is_some() && !flies),
             ("--threads", self.answer.threads != 0 && !flies),
-            ("--plot", self.plot.is_some() && experiment == Experiment::RiskTrade),
         ];
         match without_effect.into_iter().find(|(_, given)| *given) {
             Some((option, _)) => {

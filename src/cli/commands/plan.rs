@@ -22,6 +22,7 @@ use crate::cli::{
 /// Plans a path.
 pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
+    let front = args.front()?;
     threads::start(args.answer.threads)?;
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Plan, &[])?;
     loaded.ends()?;
@@ -30,10 +31,11 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     }
     // Outputs are opened before the search, which may take long.
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
+    let plot_front = output::begin_picture("--plot-front", args.plot_front.as_deref())?;
     let geojson = GeoJsonFile::begin(args.geojson.as_deref(), loaded.case.prepared.projection.as_ref())?;
     let mut table = Table::begin(args.output.as_deref(), TableFormat::Csv)?;
     let in_time = TrajectoryFile::begin(&args.trajectory)?;
-    let options = PlanOptions { proof: args.prove.proof(), verify: args.verify, estimate: true };
+    let options = PlanOptions { proof: args.prove.proof(), verify: args.verify, estimate: true, front };
     let planned = plan(&loaded.case, options, &Progress::new(args.common.quiet))?;
     output::warn_all(args.common.quiet, &planned.warnings);
     let views = Views {
@@ -43,6 +45,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     };
     let mut files = Files::default();
     files.picture(plot, || Some(planned.picture()))?;
+    files.picture(plot_front, || planned.front_picture())?;
     files.geojson(geojson, planned.geojson());
     files.table(&mut table, &views)?;
     files.trajectory(in_time, planned.path.as_ref(), &planned.case)?;

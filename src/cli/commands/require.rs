@@ -22,8 +22,9 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     let requirement = Requirement::new(&args.vary, [args.from, args.to], args.resolution, args.prove_cells_max, "--set")?;
     threads::start(args.answer.threads)?;
     let common = without_option_of(&args.vary, &args.common);
-    let to_vary =
-        load_to_vary(&args.journey, &common, &args.search, Purpose::Require, &|entries| Ok(vec![requirement.strongest(entries)]))?;
+    let to_vary = load_to_vary(&args.journey, &common, &args.search, (Purpose::Require, &args.own_keys()), &|entries| {
+        Ok(vec![requirement.strongest(entries)])
+    })?;
     to_vary.first.ends()?;
     let required = require(&to_vary.variation, &requirement, &Progress::new(args.common.quiet));
     let Required { shown, shown_entries, answer, .. } = required.map_err(|error| match error {

@@ -25,7 +25,7 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     // Outputs are opened before the computation, which may take long.
     let mut table = Table::by_extension(args.output.as_deref())?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
-    let to_vary = load_to_vary(&args.journey, &args.common, &args.search, Purpose::Trade, &|entries| {
+    let to_vary = load_to_vary(&args.journey, &args.common, &args.search, (Purpose::Trade, &[]), &|entries| {
         Ok(Trade::some_cells(entries, &swept, "--vary")?)
     })?;
     to_vary.first.ends()?;

@@ -5,7 +5,7 @@ use chta::{
     study::{Case, CellError, Variation},
 };
 
-use super::{EndOptions, Loaded, Source, Target, recorded, refused, typed, unprepared, validate_and_prepare};
+use super::{EndOptions, Loaded, OwnKey, Source, Target, recorded, refused, typed, unprepared, validate_and_prepare};
 use crate::cli::{
     Failure,
     args::{CommonArgs, JourneyArgs, SearchArgs},
@@ -30,12 +30,15 @@ pub(crate) fn load_to_vary(
     JourneyArgs { chain, start, goal }: &JourneyArgs,
     common: &CommonArgs,
     search: &SearchArgs,
-    purpose: Purpose,
+    (purpose, own): (Purpose, &[OwnKey<'_>]),
     firsts: &dyn Fn(&Entries) -> Result<Vec<Entries>, Failure>,
 ) -> Result<ToVary, Failure> {
     let ends = EndOptions::of_path(*start, *goal);
     let target = Target::chain(chain)?;
-    let Source { entries, name, text, base } = typed(&target, common, Some(search), ends)?;
+    let Source { mut entries, name, text, base } = typed(&target, common, Some(search), ends)?;
+    for (option, table, key, value) in own {
+        entries.set_by_option(option, table, key, value.clone());
+    }
     let mut refused = None;
     for first in firsts(&entries)? {
         let source = Source { entries: first, name: name.clone(), text: text.clone(), base: base.clone() };

@@ -147,3 +147,25 @@ pub struct ConeWidthPoint {
     /// The distance errors over all landings.
     pub errors: ErrorQuantiles,
 }
+
+/// Paths of increasing hops and increasing success.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrontFigure {
+    /// The caption.
+    pub caption: Caption,
+    /// One for each path, in ascending order of hops.
+    pub points: Vec<FrontPoint>,
+    /// The least success wanted, 0 to 1; `None`: any.
+    pub success_min: Option<f64>,
+}
+
+/// A path of a front.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrontPoint {
+    /// Its hops.
+    pub hops: u64,
+    /// Its estimated success.
+    pub success: Success,
+    /// Whether it is the path of the plan.
+    pub planned: bool,
+}

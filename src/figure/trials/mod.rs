@@ -7,6 +7,7 @@ mod convergence;
 mod data;
 mod diagram;
 mod flown;
+mod front;
 mod outcomes;
 mod sensitivity;
 
@@ -15,8 +16,8 @@ mod sensitivity;
 mod tests;
 
 pub use data::{
-    ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, LandingBoxes, LandingErrorFigure,
-    OutcomeBars, SensitivityBar, SensitivityFigure, SimulationFigure, Success,
+    ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, FrontFigure, FrontPoint,
+    LandingBoxes, LandingErrorFigure, OutcomeBars, SensitivityBar, SensitivityFigure, SimulationFigure, Success,
 };
 
 use super::{
@@ -114,6 +115,15 @@ pub fn draw_cone_width(figure: &ConeWidthFigure) -> Result<Picture, FigureError>
 /// None today; [`FigureError`] as for the other pictures.
 pub fn draw_sensitivity(figure: &SensitivityFigure) -> Result<Picture, FigureError> {
     alone(&figure.caption, |sheet, top| Ok(sensitivity::draw(sheet, &figure.bars, top)))
+}
+
+/// Draws the estimated success of paths over their hops, with the 95 % intervals of the estimates, the path of the plan and the least
+/// success wanted.
+///
+/// # Errors
+/// None today; [`FigureError`] as for the other pictures.
+pub fn draw_front(figure: &FrontFigure) -> Result<Picture, FigureError> {
+    alone(&figure.caption, |sheet, top| Ok(front::draw(sheet, figure, top)))
 }
 
 /// A picture of one panel.

@@ -33,6 +33,8 @@ pub enum RiskModel {
         takeoffs: TakeoffScatter,
         /// The DEM over which they are flown; `None`: the chain, whose ground ends where it ends.
         over: Option<Box<DemGround>>,
+        /// The same chain under the limits that are flown, where planning may use only shares of them.
+        whole: Option<HopTest>,
     },
     /// The margin of the flown angle to either end of its feasible set, for an angle with one degree of standard deviation.
     Slack,
@@ -116,7 +118,7 @@ impl Judge {
     pub(super) fn new(test: &HopTest, options: &SearchOptions, model: &RiskModel, tolerance_m: Option<f64>) -> Self {
         let (trials, takeoffs, position_sigma_m) = match model {
             RiskModel::Slack => (Trials::Slack, TakeoffScatter::OfPosition, 0.0),
-            RiskModel::Flown { errors, takeoffs, over } => {
+            RiskModel::Flown { errors, takeoffs, over, whole } => {
                 let of_takeoffs = match takeoffs {
                     TakeoffScatter::OfPosition => errors.distribution,
                     // The sum of the errors of many landings is nearly Gaussian.
@@ -126,7 +128,7 @@ impl Judge {
                     None => {
                         // Along a chain there is one plane of travel.
                         let errors = errors.in_one_plane();
-                        let ground = ChainGround::new(test.clone());
+                        let ground = ChainGround::new(whole.as_ref().unwrap_or(test).clone());
                         let vertices = test.chain().geometry().vertices().len();
                         Trials::Chain(HopTrials::new(&ground, &errors, of_takeoffs, vertices, SEARCHED_DRAWS))
                     }

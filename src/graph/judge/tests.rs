@@ -55,7 +55,7 @@ struct Case<'a> {
 impl Case<'_> {
     fn judge(&self) -> Judge {
         let options = SearchOptions { takeoff: self.choice, ..SearchOptions::default() };
-        let model = RiskModel::Flown { errors: self.errors.clone(), takeoffs: TakeoffScatter::OfPosition, over: None };
+        let model = RiskModel::Flown { errors: self.errors.clone(), takeoffs: TakeoffScatter::OfPosition, over: None, whole: None };
         Judge::new(self.test, &options, &model, self.tolerance_m)
     }
 
@@ -328,7 +328,8 @@ fn a_margin_of_one_degree_on_either_side_is_one_standard_deviation() {
 
 #[test]
 fn errors_that_are_no_numbers_are_refused() {
-    let refused = |errors| RiskModel::Flown { errors, takeoffs: TakeoffScatter::OfPosition, over: None }.check().is_err();
+    let refused =
+        |errors| RiskModel::Flown { errors, takeoffs: TakeoffScatter::OfPosition, over: None, whole: None }.check().is_err();
     for bad in [f64::NAN, f64::INFINITY, -1.0] {
         assert!(refused(Uncertainty { takeoff_speed_sigma_m_s: bad, ..Uncertainty::NONE }), "{bad}");
         assert!(refused(Uncertainty { height_sigma_m: bad, height_correlation_m: 1.0, ..Uncertainty::NONE }), "{bad}");

@@ -28,8 +28,22 @@ pub struct CapabilityRange {
 impl CapabilityRange {
     /// The middle value: the geometric mean of positive values, which may differ by orders of magnitude, else the arithmetic
     /// mean.
-    fn middle(&self, a: f64, b: f64) -> f64 {
+    pub(crate) fn middle(&self, a: f64, b: f64) -> f64 {
         if self.is_positive() { a.sqrt() * b.sqrt() } else { 0.5 * (a + b) }
+    }
+
+    /// The value at a share of the way from the weakest to the strongest, with equal ratios where both are positive.
+    pub(crate) fn at_share(&self, share: f64) -> f64 {
+        let Self { weakest, strongest, .. } = *self;
+        if share <= 0.0 {
+            weakest
+        } else if share >= 1.0 {
+            strongest
+        } else if self.is_positive() {
+            weakest * libm::pow(strongest / weakest, share)
+        } else {
+            weakest + share * (strongest - weakest)
+        }
     }
 
     fn is_positive(&self) -> bool {
@@ -37,7 +51,7 @@ impl CapabilityRange {
     }
 
     /// Whether two values are within the resolution, or no double lies between them.
-    fn is_close(&self, a: f64, b: f64) -> bool {
+    pub(crate) fn is_close(&self, a: f64, b: f64) -> bool {
         let scale = if self.is_positive() { a.max(b) } else { (self.strongest - self.weakest).abs() };
         let middle = self.middle(a, b);
         (a - b).abs() <= self.resolution * scale || middle <= a.min(b) || middle >= a.max(b)

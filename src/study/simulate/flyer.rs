@@ -9,7 +9,7 @@ use crate::{
     path::HopPath,
     progress::Progress,
     study::{Planned, dem_ground::dem_ground, front::FlownJourney},
-    uncertainty::{Policy, Simulation, Summary, TrialOptions, Uncertainty},
+    uncertainty::{Policy, Simulation, Uncertainty},
 };
 
 /// A plan with everything that its trials need.
@@ -37,7 +37,7 @@ impl<'a> Flyer<'a> {
 
     fn journey(&self) -> FlownJourney<'_> {
         let Planned { case, test, ends, .. } = self.planned;
-        FlownJourney { scenario: &case.scenario, test, ends: *ends, ground: self.ground.as_ref() }
+        FlownJourney { scenario: &case.scenario, test, whole: case.whole_test(), ends: *ends, ground: self.ground.as_ref() }
     }
 
     /// The whole raster with its overlays, if the terrain is one.
@@ -53,15 +53,5 @@ impl<'a> Flyer<'a> {
     /// The same under other errors than those of the scenario; replanning counts on those of the scenario all the same.
     pub(in crate::study) fn simulation_under(&self, path: &HopPath, errors: Uncertainty) -> Result<Simulation, SimulateError> {
         self.journey().simulation_under(path, self.to_go.as_ref(), errors)
-    }
-
-    /// Flies the trials of a path over this ground.
-    pub(in crate::study) fn fly(
-        &self,
-        path: &HopPath,
-        options: &TrialOptions,
-        progress: &dyn Progress,
-    ) -> Result<Summary, SimulateError> {
-        Ok(self.simulation(path)?.run(options, &mut (), progress)?)
     }
 }

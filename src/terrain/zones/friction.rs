@@ -22,6 +22,8 @@ const WHAT: &str = "friction raster";
 pub struct FrictionRaster {
     path: PathBuf,
     raster: Dem,
+    /// The share of its coefficients that counts.
+    share: f64,
     /// Why its map could not be compared with the terrain's.
     not_compared: Option<String>,
 }
@@ -51,10 +53,15 @@ pub fn read_friction_raster(path: &Path, coordinates: Option<&CoordinateSystem>)
             index % raster.cols()
         )));
     }
-    Ok(FrictionRaster { path: path.to_path_buf(), raster, not_compared })
+    Ok(FrictionRaster { path: path.to_path_buf(), raster, share: 1.0, not_compared })
 }
 
 impl FrictionRaster {
+    /// The same raster, of whose coefficients a share counts.
+    pub(crate) fn with_share(&self, share: f64) -> Self {
+        Self { share: self.share * share, ..self.clone() }
+    }
+
     /// Its content, whatever file it comes from.
     pub(crate) const fn content(&self) -> &dyn std::fmt::Debug {
         &self.raster
@@ -86,7 +93,7 @@ impl FrictionRaster {
     /// does not extend that far.
     pub fn at(&self, place: MapPoint) -> Option<FrictionCone> {
         let least = cells_at(place, &self.raster).flatten().reduce(f64::min)?;
-        FrictionCone::new(least).ok()
+        FrictionCone::new(self.share * least).ok()
     }
 
     /// Gives every segment of a profile its friction, and adds vertices where its line enters a pixel with another
@@ -107,7 +114,7 @@ impl FrictionRaster {
             let least = cell.value.iter().flatten().copied().reduce(f64::min);
             says_any |= least.is_some();
             let cone = match least {
-                Some(coefficient) => FrictionCone::new(coefficient).ok(),
+                Some(coefficient) => FrictionCone::new(self.share * coefficient).ok(),
                 None => constant,
             };
             let Some(cone) = cone else {

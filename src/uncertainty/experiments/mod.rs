@@ -15,8 +15,6 @@ pub enum Experiment {
     WorstDrift,
     /// Narrower cones about the vertical on the same draws (P section V-B, last sentence).
     ConeWidth,
-    /// Hops against reliability: the most reliable path for every number of hops, estimated and flown.
-    RiskTrade,
     /// What each error costs: success without each in turn, on the same draws.
     Sensitivity,
 }
@@ -24,18 +22,17 @@ pub enum Experiment {
 impl Experiment {
     /// Whether it flies the trials of `[uncertainty]`.
     pub const fn flies_trials(self) -> bool {
-        matches!(self, Self::RiskTrade | Self::Sensitivity)
+        matches!(self, Self::Sensitivity)
     }
 
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::WorstDrift, Self::ConeWidth, Self::RiskTrade, Self::Sensitivity];
+    pub const ALL: [Self; 3] = [Self::WorstDrift, Self::ConeWidth, Self::Sensitivity];
 
     /// The name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::WorstDrift => "worst-drift",
             Self::ConeWidth => "cone-width",
-            Self::RiskTrade => "risk-trade",
             Self::Sensitivity => "sensitivity",
         }
     }

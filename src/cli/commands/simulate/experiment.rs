@@ -23,21 +23,20 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
     let progress = Progress::new(args.common.quiet);
     let planned = plan_to_fly(args, loaded, &progress)?;
     output::warn_all(args.common.quiet, &planned.warnings);
-    let experimented = experiment(&planned, which, reading, &progress)?;
+    let answer = experiment(&planned, which, reading, &progress)?;
     drop(progress);
-    let Some(answer) = &experimented.answer else {
+    let Some(answer) = &answer else {
         // Without a path nothing is flown, and the answer says so.
         let simulated = simulate(&planned, &SimulateOptions::default(), &mut (), &())?;
         let text = || simulate_text(&simulated.answer, further_means());
         show(args.answer.format, text, || loaded.document(DocumentKind::Simulate, &[], &simulated.answer))?;
         return Ok(Answer::No);
     };
-    output::warn_all(args.common.quiet, &experimented.warnings);
     let title = loaded.case.scenario.title.clone().unwrap_or_default();
     let mut files = Files::default();
     files.picture(plot, || answer.picture(&title))?;
     files.finish()?;
-    let json = || loaded.document(DocumentKind::SimulateExperiment, &experimented.warnings, answer);
+    let json = || loaded.document(DocumentKind::SimulateExperiment, &[], answer);
     show(args.answer.format, || answer.text(), json)?;
     Ok(Answer::Yes)
 }
