@@ -82,8 +82,8 @@ fn trials_over_a_dem_bounce_and_the_estimate_is_theirs() {
         assert_eq!(counts, 300, "{answer}");
         let plan = desk.json(&["plan", "map.toml", "--set", &format!("uncertainty.policy={policy}")]);
         let flown = desk.json(&["simulate", "map.toml", "--set", &format!("uncertainty.policy={policy}")]);
-        let chosen = plan["reliable_paths"].as_array().unwrap().last().unwrap();
-        let estimated = number(chosen, "/success_estimated");
+        let chosen = plan["surest"].as_array().unwrap().last().unwrap();
+        let estimated = number(chosen, "/estimated_success");
         assert!((estimated - number(&flown, "/success_rate")).abs() < 0.1, "{chosen} {flown}");
     }
 }

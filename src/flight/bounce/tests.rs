@@ -191,6 +191,9 @@ fn bounces_on_vertices_and_edges_end() {
     }
 }
 
+/// Name, profile, restitution, landing speed limit, how the hop ends, and whether it bounces.
+type Row<'a> = (&'a str, &'a [(f64, f64)], Option<Restitution>, f64, Option<ContactFailure>, bool);
+
 #[test]
 fn later_contacts_and_the_place_of_rest_are_judged() {
     let bouncy = Restitution::new(0.5, 0.9, Some(0.05)).unwrap();
@@ -201,7 +204,7 @@ fn later_contacts_and_the_place_of_rest_are_judged() {
     let ends = [(-9.0, 0.0), (-0.5, 0.0)];
     // Ground too steep to rest on for a friction of 0.7 lies just beyond the first contact.
     let steep = [(-9.0, 0.0), (-0.9, 0.0), (0.1, -1.2), (90.0, -110.0)];
-    let rows: [(&str, &[(f64, f64)], Option<Restitution>, f64, Option<ContactFailure>, bool); 7] = [
+    let rows: [Row<'_>; 7] = [
         ("level", &level, Some(bouncy), 4.0, None, true),
         ("cliff, slow limit", &cliff, Some(bouncy), 4.0, Some(ContactFailure::TooFast), true),
         ("cliff, fast limit", &cliff, Some(bouncy), 40.0, None, true),

@@ -97,7 +97,7 @@ pub(super) struct Judge {
 #[derive(Clone, Debug)]
 enum Trials {
     Slack,
-    Chain(HopTrials<ChainGround>),
+    Chain(Box<HopTrials<ChainGround>>),
     Map(Box<(HopTrials<DemGround>, DemGround)>),
 }
 
@@ -122,7 +122,7 @@ impl Judge {
                         // Along a chain there is one plane of travel.
                         let errors = Uncertainty { heading_sigma: Angle::from_radians(0.0), ..*errors };
                         let ground = ChainGround::new(test.clone());
-                        Trials::Chain(HopTrials::new(&ground, &errors, test.chain().geometry().vertices().len()))
+                        Trials::Chain(Box::new(HopTrials::new(&ground, &errors, test.chain().geometry().vertices().len())))
                     }
                     Some(ground) => Trials::Map(Box::new((HopTrials::new(ground.as_ref(), errors, 1), (**ground).clone()))),
                 };
