@@ -43,6 +43,27 @@ impl TrialGround {
     }
 }
 
+/// A warning where the hops of a path, flown exactly, bounce on beyond their planned landings: a plan is a plan of first contacts.
+pub(super) fn unplanned_bounces(hops: &[Hop]) -> Option<String> {
+    let roll_outs = || hops.iter().filter_map(|hop| Some((hop.roll_out?, hop.run_m())));
+    let farthest_m = roll_outs().map(|(roll_out, _)| roll_out.distance_m.abs()).reduce(f64::max)?;
+    let share = roll_outs().map(|(roll_out, run_m)| roll_out.distance_m.abs() / run_m).fold(0.0, f64::max);
+    let unheld = roll_outs().filter(|(roll_out, _)| !roll_out.rests).count();
+    let held = match unheld {
+        0 => String::new(),
+        1 => "; one of them does not come to rest on ground that holds it".to_owned(),
+        more => format!("; {more} of them do not come to rest on ground that holds them"),
+    };
+    (farthest_m > 0.0 || unheld > 0).then(|| {
+        format!(
+            "by [contact] planned hops come to rest up to {farthest_m:.3} m, {:.0} % of their length, from their landings{held}: a plan lists \
+             first contacts and takes each hop off from the landing before; trials fly the bounces, so that only the policy replan, which \
+             aims at the place of rest, follows this plan",
+            100.0 * share
+        )
+    })
+}
+
 impl Scenario {
     /// Warnings about a path that was found: constant gravity, a landing beside the goal, a clearance that no hop keeps.
     pub fn path_warnings(&self, path: &HopPath) -> Vec<String> {
@@ -51,32 +72,8 @@ impl Scenario {
             .into_iter()
             .chain(self.missed_goal(path))
             .chain(self.unkept_clearance(path))
-            .chain(self.unplanned_bounces(path))
+            .chain(unplanned_bounces(&path.hops))
             .collect()
-    }
-
-    /// A warning where the hops of a path, flown exactly, bounce on beyond their planned landings: a plan is a plan of first contacts.
-    fn unplanned_bounces(&self, path: &HopPath) -> Option<String> {
-        let roll_outs = || path.hops.iter().filter_map(|hop| Some((hop.roll_out?, hop.run_m())));
-        let farthest_m = roll_outs().map(|(roll_out, _)| roll_out.distance_m.abs()).reduce(f64::max)?;
-        let last_m = roll_outs().last().map_or(0.0, |(roll_out, _)| roll_out.distance_m.abs());
-        let share = roll_outs().map(|(roll_out, run_m)| roll_out.distance_m.abs() / run_m).fold(0.0, f64::max);
-        let unheld = roll_outs().filter(|(roll_out, _)| !roll_out.rests).count();
-        let held = match unheld {
-            0 => String::new(),
-            1 => "; one of them does not come to rest on ground that holds it".to_owned(),
-            more => format!("; {more} of them do not come to rest on ground that holds them"),
-        };
-        (farthest_m > 0.0 || unheld > 0).then(|| {
-            format!(
-                "by [contact] the hops of this plan come to rest up to {} m, {:.0} % of their length, from their planned landings, the last \
-                 one {} m from the goal{held}: the plan lists first contacts and takes each hop off from the landing before; trials fly the \
-                 bounces, so that only the policy replan, which aims at the place of rest, follows this plan",
-                format_number(farthest_m),
-                100.0 * share,
-                format_number(last_m)
-            )
-        })
     }
 
     /// A warning where commands in steps land farther from the goal than trials may.

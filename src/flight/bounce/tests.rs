@@ -5,11 +5,14 @@ use nalgebra::{Point2, Vector2, Vector3};
 
 use super::BOUNCES_MAX;
 use crate::{
-    ballistics::level_bounces,
+    ballistics::{Arc, level_bounces},
     chain::{ConstrainedChain, PolygonalChain},
     draw::Draw,
-    flight::{Command, Distribution, Errors, FlownHop, HopErrors, HopTrials, JudgedHop, SEARCHED_DRAWS, TrialDraws, Uncertainty},
-    ground::{ChainGround, ChainPosition, ContactFailure, DemGround, FirstContact, LiftoffVelocity, MapPosition},
+    flight::{
+        Command, Distribution, Errors, FlownHop, HopErrors, HopTrials, JudgedHop, SEARCHED_DRAWS, TrialDraws, Uncertainty,
+        resting_at,
+    },
+    ground::{ChainGround, ChainPosition, ContactFailure, DemGround, FirstContact, LiftoffVelocity, MapPosition, Windows},
     hop::HopTest,
     quantity::{Angle, ChainPoint, MapPoint},
     terrain::{Dem, GeoReference, OverlaidDem, Overlays},
@@ -191,6 +194,9 @@ fn bounces_on_vertices_and_edges_end() {
     }
 }
 
+/// Name, profile, restitution, landing speed limit, how the hop ends, and whether it bounces.
+type Row<'a> = (&'a str, &'a [(f64, f64)], Option<Restitution>, f64, Option<ContactFailure>, bool);
+
 #[test]
 fn later_contacts_and_the_place_of_rest_are_judged() {
     let bouncy = Restitution::new(0.5, 0.9, Some(0.05)).unwrap();
@@ -201,7 +207,7 @@ fn later_contacts_and_the_place_of_rest_are_judged() {
     let ends = [(-9.0, 0.0), (-0.5, 0.0)];
     // Ground too steep to rest on for a friction of 0.7 lies just beyond the first contact.
     let steep = [(-9.0, 0.0), (-0.9, 0.0), (0.1, -1.2), (90.0, -110.0)];
-    let rows: [(&str, &[(f64, f64)], Option<Restitution>, f64, Option<ContactFailure>, bool); 7] = [
+    let rows: [Row<'_>; 7] = [
         ("level", &level, Some(bouncy), 4.0, None, true),
         ("cliff, slow limit", &cliff, Some(bouncy), 4.0, Some(ContactFailure::TooFast), true),
         ("cliff, fast limit", &cliff, Some(bouncy), 40.0, None, true),
@@ -283,4 +289,47 @@ fn a_cross_slope_turns_the_bounce_downhill() {
     let from: MapPosition = ground.position(MapPoint::origin()).unwrap();
     let hop = flown(&ground, &from, Vector3::new(2.0, 0.0, 2.0));
     assert!(hop.end.at.y.abs() < 1e-9 && hop.rest.at.y < -0.1, "{hop:?}");
+}
+
+/// Commands aimed short rest where they are meant to end: over level and tilted ground within a thousandth of the hop, over rough ground
+/// never farther from it than the command that they replace, and on the whole much nearer.
+#[test]
+fn commands_aimed_short_rest_where_they_are_meant_to_end() {
+    let mut draw = Draw::seeded(19);
+    let (mut before_m, mut after_m) = (0.0, 0.0);
+    for number in 0..200 {
+        let gravity_m_s2 = draw.log_uniform(1e-5, 25.0);
+        let restitution = Restitution::new(draw.uniform(0.1, 0.6), draw.uniform(0.0, 0.8), None).unwrap();
+        let hopper = hopper(Some(restitution), 1e9);
+        let rough_m = if number % 2 == 0 { 0.0 } else { 0.3 };
+        let tilt = Vector2::new(draw.uniform(-0.3, 0.3), draw.uniform(-0.3, 0.3));
+        let heights: Vec<f64> = (0..81 * 81).map(|_| draw.uniform(-rough_m, rough_m)).collect();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows and columns 0 to 80")]
+        let rough = |x: f64, y: f64| heights[(x + 40.0).round() as usize + 81 * (y + 40.0).round() as usize];
+        let ground = dem(81, 1.0, &hopper, gravity_m_s2, |x, y| tilt.x * x + tilt.y * y + rough(x, y));
+        let away = draw.uniform(0.0, std::f64::consts::TAU);
+        let length_m = draw.uniform(4.0, 12.0);
+        let [from, to] = [0.0, length_m].map(|m| ground.position(MapPoint::new(m * away.cos(), m * away.sin())).unwrap());
+        let Some(windows) = ground.windows(&from, &to).filter(|windows| !windows.lofts.is_empty()) else { continue };
+        let steep = Arc::new(windows.sight, windows.lofts[0].lower.max(draw.uniform(0.9, 1.6)), gravity_m_s2);
+        let command = Command::of_arc(&steep, Vector2::new(away.cos(), away.sin()), to);
+        let short = resting_at(&ground, &from, command);
+        let miss_m = |command: &Command<MapPosition>| {
+            let hop =
+                Errors::new(Uncertainty::NONE, false).fly(&ground, &from, &command.liftoff, &command.aim, &HopErrors::default());
+            hop.failure.is_none().then_some((hop.rest.at - to.at).norm())
+        };
+        assert_eq!(short.rest, to);
+        let Some(before) = miss_m(&command) else { continue };
+        let after = miss_m(&short).unwrap();
+        assert!(after <= before && (rough_m > 0.0 || after <= 1e-3 * length_m), "{number}: {after} of {before} m, {command:?}");
+        (before_m, after_m) = (before_m + before, after_m + after);
+    }
+    assert!(after_m < 0.2 * before_m && before_m > 100.0, "{after_m} of {before_m} m");
+    // Without bounces, the command itself.
+    let ground = chain(&[(-9.0, 0.0), (90.0, 0.0)], &hopper(None, 9.0), 1.62, 1.0);
+    let liftoff = LiftoffVelocity { heading: Vector2::x(), horizontal_m_s: 3.4, vertical_m_s: 3.4 };
+    let command = Command::new(liftoff, station(&ground, 14.0));
+    let same = resting_at(&ground, &station(&ground, 0.0), command);
+    assert!(same.liftoff == command.liftoff && same.aim == command.aim);
 }

@@ -99,7 +99,7 @@ pub(super) struct Judge {
 #[derive(Clone, Debug)]
 enum Trials {
     Slack,
-    Chain(HopTrials<ChainGround>),
+    Chain(Box<HopTrials<ChainGround>>),
     Map(Box<(HopTrials<DemGround>, DemGround)>),
 }
 
@@ -130,7 +130,7 @@ impl Judge {
                         let errors = errors.in_one_plane();
                         let ground = ChainGround::new(whole.as_ref().unwrap_or(test).clone());
                         let vertices = test.chain().geometry().vertices().len();
-                        Trials::Chain(HopTrials::new(&ground, &errors, of_takeoffs, vertices, SEARCHED_DRAWS))
+                        Trials::Chain(Box::new(HopTrials::new(&ground, &errors, of_takeoffs, vertices, SEARCHED_DRAWS)))
                     }
                     Some(ground) => {
                         let trials = HopTrials::new(ground.as_ref(), errors, of_takeoffs, 1, SEARCHED_DRAWS);

@@ -7,7 +7,7 @@ use crate::{
     reach::map::{HopMap, Journey, MapHop, Mobility, PostHops, Search, Source, joined, mobility, path_hops, search, verify},
     report::{GoalRecord, HopRecord, MapAnswer, MapSummary, PropellantShortage, SimulationRecord, TotalsRecord},
     scenario::UncertaintyKeys,
-    study::{Extremes, TrialGround, constant_gravity_warnings},
+    study::{Extremes, TrialGround, constant_gravity_warnings, sense::unplanned_bounces},
     uncertainty::{Mission, Policy, Simulation},
     world::FrictionCone,
 };
@@ -93,6 +93,7 @@ impl PreparedMap {
         }
         let hops: Vec<_> = paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
         warnings.extend(constant_gravity_warnings(&scenario.body, Extremes::of(&hops)));
+        warnings.extend(unplanned_bounces(&hops));
         Ok(MapStudy { answer, warnings, out, back, mobility, predecessors, goal_hops, paths })
     }
 
