@@ -88,7 +88,9 @@ fn the_draws_beside_a_landing_are_its_errors() {
             assert_eq!([of(row, "drawn_position_x_m"), of(row, "drawn_position_y_m")], [0.0; 2], "open loop asks for no position");
             frictions.push(of(row, "drawn_friction_coefficient"));
         }
-        let spread = (frictions.iter().map(|friction| friction * friction).sum::<f64>() / frictions.len() as f64).sqrt();
+        let spread = (frictions.iter().map(|friction| friction * friction).sum::<f64>()
+            / f64::from(u32::try_from(frictions.len()).unwrap()))
+        .sqrt();
         assert!((spread - 0.02).abs() < 0.003, "{spread}");
     }
 }
@@ -149,7 +151,7 @@ fn a_result_is_flown_as_it_stands() {
             assert_eq!(path(&other), path(&plain), "{scenario}: {result}");
         }
         let anew = desk.json(&["simulate", "plain.json", "--set", traded, "--plan-anew"]);
-        assert_eq!(path(&anew), path(&desk.json(&["plan", scenario, "--set", traded])), "{scenario}");
+        assert_eq!(path(&anew), path(&desk.json(&["plan", "plain.json", "--set", traded])), "{scenario}");
         let mut spoiled = plain.clone();
         spoiled["path"][0]["takeoff_speed_m_s"] = json!(number(&plain["path"][0]["takeoff_speed_m_s"]) * 1.01);
         written("spoiled.json", &spoiled);

@@ -23,7 +23,9 @@ const INTERVAL_PEN: Pen = Pen { colour: BLACK, width_mm: 0.25 };
 pub(super) fn draw(sheet: &mut Sheet, bars: &[SensitivityBar], top_mm: f64) -> (f64, Vec<(Swatch, String)>) {
     let is_finite = |bar: &&SensitivityBar| [bar.cost.rate, bar.cost.low, bar.cost.high].into_iter().all(f64::is_finite);
     let bars: Vec<&SensitivityBar> = bars.iter().filter(is_finite).collect();
-    let texts: Vec<String> = bars.iter().map(|bar| points(&bar.cost)).collect();
+    let narrowest = bars.iter().map(|bar| bar.cost.high - bar.cost.low).fold(f64::INFINITY, f64::min);
+    let decimals = if narrowest >= 0.01 { 1 } else { 2 };
+    let texts: Vec<String> = bars.iter().map(|bar| points(&bar.cost, decimals)).collect();
     let wide = |texts: &mut dyn Iterator<Item = &str>| texts.map(|text| text_width_mm(text, SMALL_MM)).fold(0.0, f64::max);
     let names_mm = wide(&mut bars.iter().map(|bar| bar.name.as_str()));
     let numbers_mm = wide(&mut texts.iter().map(String::as_str));
@@ -66,8 +68,7 @@ pub(super) fn draw(sheet: &mut Sheet, bars: &[SensitivityBar], top_mm: f64) -> (
 }
 
 /// A difference with its interval, in percentage points.
-fn points(cost: &Success) -> String {
-    let decimals = if cost.high - cost.low >= 0.01 { 1 } else { 2 };
+fn points(cost: &Success, decimals: usize) -> String {
     // No negative zero.
     let [rate, low, high] = [cost.rate, cost.low, cost.high].map(|share| 100.0 * share + 0.0);
     format!("{rate:.decimals$} ({low:.decimals$} to {high:.decimals$})")

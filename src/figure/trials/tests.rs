@@ -352,7 +352,7 @@ fn costs_of_errors_are_bars_from_zero() {
     let figure = SensitivityFigure { caption: caption(), bars };
     let picture = check_picture("sensitivity", || draw_sensitivity(&figure).unwrap());
     let labels = labels(&picture);
-    for text in ["takeoff_angle_sigma_deg = 0.5", "31.0 (29.0 to 33.0)", "-1.0 (-1.8 to -0.2)", "percentage points"] {
+    for text in ["takeoff_angle_sigma_deg = 0.5", "31.00 (29.00 to 33.00)", "-1.00 (-1.80 to -0.20)", "percentage points"] {
         assert!(labels.iter().any(|label| label.text.contains(text)), "{text}");
     }
     for (name, bars) in [
