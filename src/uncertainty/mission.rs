@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 use crate::{
     chain::Station,
-    graph::CostToGo,
+    graph::{CostToGo, PostCosts},
     ground::{ChainGround, ContactPoint, DemGround, Surface},
     hop::HopTest,
     path::HopPath,
@@ -35,11 +35,16 @@ pub(super) enum MissionGround {
     Map(DemGround),
 }
 
-/// The data for replanning: the chain of the nodes, and the cost-to-go of each node.
+/// The data for replanning.
 #[derive(Clone, Debug)]
-pub(super) struct Replanning {
-    pub(super) test: HopTest,
-    pub(super) to_go: Arc<CostToGo>,
+pub(super) enum Replanning {
+    /// The chain of the nodes, and the cost-to-go of each node.
+    Nodes {
+        test: HopTest,
+        to_go: Arc<CostToGo>,
+    },
+    /// The costs-to-go of the posts of the DEM.
+    Posts(Arc<PostCosts>),
 }
 
 impl Mission {
@@ -69,9 +74,15 @@ impl Mission {
                 write!(digest, "{:?}{:?}{friction:?}{keep_out:?}{:?}", ground.envelope(), ground.surface(), ground.terrain().dem())
             }
         };
-        if let Some(Replanning { test, to_go }) = &self.replanning {
-            let _ = chain_text(&mut digest, test);
-            let _ = write!(digest, "{to_go:?}");
+        match &self.replanning {
+            Some(Replanning::Nodes { test, to_go }) => {
+                let _ = chain_text(&mut digest, test);
+                let _ = write!(digest, "{to_go:?}");
+            }
+            Some(Replanning::Posts(to_go)) => {
+                let _ = write!(digest, "{to_go:?}");
+            }
+            None => {}
         }
         digest.0.finalize().iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
     }
@@ -79,7 +90,14 @@ impl Mission {
     /// The same mission, whose trials may also be replanned over nodes of this chain.
     #[must_use]
     pub fn with_replanning(self, test: HopTest, to_go: Arc<CostToGo>) -> Self {
-        Self { replanning: Some(Replanning { test, to_go }), ..self }
+        Self { replanning: Some(Replanning::Nodes { test, to_go }), ..self }
+    }
+
+    /// The same mission over a DEM, whose trials may also be replanned over its posts, in any direction. A mission along a chain has no
+    /// posts, and is not replanned by them.
+    #[must_use]
+    pub fn with_replanning_over_posts(self, to_go: Arc<PostCosts>) -> Self {
+        Self { replanning: Some(Replanning::Posts(to_go)), ..self }
     }
 }
 

@@ -48,6 +48,7 @@ mod landing_tally;
 mod mission;
 mod options;
 mod outcome;
+mod post_replan;
 mod quantiles;
 mod rates;
 mod record;

@@ -8,7 +8,6 @@ use crate::{
     scenario::UncertaintyKeys,
     study::{DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body},
     terrain::{Dem, GeoReference, MapProjection, NoProjection, check_map_scale},
-    uncertainty::Policy,
 };
 
 /// A requested position and the post of the map nearest to it.
@@ -100,15 +99,8 @@ impl PreparedMap {
 
 impl MapQuestion<'_> {
     /// The errors and options of the trials, `None` if none are asked for.
-    ///
-    /// # Errors
-    /// [`MapStudyError::Replanning`].
-    pub fn trial_keys(&self) -> Result<Option<UncertaintyKeys>, MapStudyError> {
-        let keys = self.scenario.uncertainty.unwrap_or_default();
-        if self.trials && keys.policy == Policy::Replan {
-            return Err(MapStudyError::Replanning);
-        }
-        Ok(self.trials.then_some(keys))
+    pub fn trial_keys(&self) -> Option<UncertaintyKeys> {
+        self.trials.then(|| self.scenario.uncertainty.unwrap_or_default())
     }
 }
 
