@@ -122,6 +122,8 @@ impl Purpose {
             ("search", "effort") => !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { effort: false, .. }),
             ("search", "takeoff_angle") => !matches!(self, Self::Trade | Self::Fan | Self::Map { goals: false, effort: false, .. }),
             ("search", "split") => !on_a_dem && !matches!(self, Self::Hop | Self::Trade),
+            // A robot that replans over a map weighs it.
+            ("search", "risk") if matches!(self, Self::Map { trials: true, .. }) => true,
             ("search", "risk" | "risk_extra_hops_max") => by_risk,
             ("uncertainty", name) => flies || (by_risk && weighs_risk && OF_RISK.contains(&name)),
             _ => true,

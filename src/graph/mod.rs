@@ -19,6 +19,7 @@ mod judge;
 mod local_reach;
 mod nodes;
 mod post_costs;
+mod post_risks;
 pub mod proof;
 mod questions;
 mod reachable;
@@ -35,6 +36,7 @@ pub use frontier::{Frontier, NearestMiss};
 pub use judge::{RiskModel, TakeoffScatter};
 pub use nodes::{NodeSet, NodesError, PointSpacing};
 pub use post_costs::PostCosts;
+pub use post_risks::PostRisks;
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
 pub use reliability::{

@@ -1,12 +1,9 @@
 //! The costs-to-go of the posts of a map, by which a robot replans over it.
 
-use std::fmt;
-
-use super::{Cost, Effort, MapJudge};
+use super::{Cost, Effort};
 use crate::{
     ballistics::TakeoffChoice,
-    flight::Uncertainty,
-    ground::{DemGround, MapError, NodeLattice, Post},
+    ground::{MapError, NodeLattice, Post},
 };
 
 /// The mark of a post from which the goal cannot be reached.
@@ -18,7 +15,7 @@ const UNREACHED: u16 = u16::MAX;
 ///
 /// # Complexity
 /// 10 bytes for each post.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct PostCosts {
     lattice: NodeLattice,
     /// For each post its hops, [`u16::MAX`] where the goal cannot be reached from it.
@@ -27,17 +24,6 @@ pub struct PostCosts {
     efforts: Vec<f64>,
     effort: Effort,
     takeoff: TakeoffChoice,
-    judge: Option<MapJudge>,
-}
-
-/// All but the judge, which follows from the ground and the errors.
-impl fmt::Debug for PostCosts {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { lattice, hops, efforts, effort, takeoff, judge } = self;
-        let mut out = formatter.debug_struct("PostCosts");
-        out.field("lattice", lattice).field("hops", hops).field("efforts", efforts).field("effort", effort);
-        out.field("takeoff", takeoff).field("is_judged", &judge.is_some()).finish()
-    }
 }
 
 impl PostCosts {
@@ -58,32 +44,7 @@ impl PostCosts {
             });
         }
         let hops = hops.into_iter().map(|hops| u16::try_from(hops).unwrap_or(UNREACHED)).collect();
-        Ok(Self { lattice, hops, efforts, effort, takeoff, judge: None })
-    }
-
-    /// The costs of a machine that keeps a margin, and after them those of the machine itself at the posts from which the goal can only
-    /// be reached without a margin: a robot by these costs goes where there is a margin, if it can.
-    #[must_use]
-    pub(crate) fn then_without_margin(self, without: &Self) -> Self {
-        let most = self.hops.iter().copied().filter(|&hops| hops != UNREACHED).max().unwrap_or(0);
-        let labels = self.hops.iter().zip(&self.efforts).zip(without.hops.iter().zip(&without.efforts));
-        let (hops, efforts) = labels
-            .map(|((&hops, &effort), (&hops_without, &effort_without))| match (hops, hops_without) {
-                (UNREACHED, UNREACHED) => (UNREACHED, f64::NAN),
-                // Both counts come from signed ones, so that their sum is none that marks a post.
-                (UNREACHED, _) => (most.saturating_add(hops_without), effort_without),
-                _ => (hops, effort),
-            })
-            .unzip();
-        Self { hops, efforts, ..self }
-    }
-
-    /// The same, by which a robot with these errors flies the most reliable command of every hop, if its take-offs are so chosen.
-    #[must_use]
-    pub fn with_errors(self, ground: &DemGround, errors: &Uncertainty) -> Self {
-        let is_judged = self.takeoff == TakeoffChoice::MostReliable && *errors != Uncertainty::NONE;
-        let judge = is_judged.then(|| MapJudge::new(ground, errors));
-        Self { judge, ..self }
+        Ok(Self { lattice, hops, efforts, effort, takeoff })
     }
 
     /// The posts.
@@ -99,11 +60,6 @@ impl PostCosts {
     /// The choice of take-offs.
     pub const fn takeoff(&self) -> TakeoffChoice {
         self.takeoff
-    }
-
-    /// The judge of commands, where the most reliable one is chosen.
-    pub(crate) const fn judge(&self) -> Option<&MapJudge> {
-        self.judge.as_ref()
     }
 
     /// The fewest hops from a post to the goal; `None` if it cannot be reached.

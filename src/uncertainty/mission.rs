@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 use crate::{
     chain::Station,
-    graph::{CostToGo, PostCosts},
+    graph::{CostToGo, PostCosts, PostRisks},
     ground::{ChainGround, ContactPoint, DemGround, Surface},
     hop::HopTest,
     path::HopPath,
@@ -39,12 +39,11 @@ pub(super) enum MissionGround {
 #[derive(Clone, Debug)]
 pub(super) enum Replanning {
     /// The chain of the nodes, and the cost-to-go of each node.
-    Nodes {
-        test: HopTest,
-        to_go: Arc<CostToGo>,
-    },
+    Nodes { test: HopTest, to_go: Arc<CostToGo> },
     /// The costs-to-go of the posts of the DEM.
-    Posts(Arc<PostCosts>),
+    PostCosts(Arc<PostCosts>),
+    /// The risks-to-go of the posts of the DEM.
+    PostRisks(Arc<PostRisks>),
 }
 
 impl Mission {
@@ -79,7 +78,10 @@ impl Mission {
                 let _ = chain_text(&mut digest, test);
                 let _ = write!(digest, "{to_go:?}");
             }
-            Some(Replanning::Posts(to_go)) => {
+            Some(Replanning::PostCosts(to_go)) => {
+                let _ = write!(digest, "{to_go:?}");
+            }
+            Some(Replanning::PostRisks(to_go)) => {
                 let _ = write!(digest, "{to_go:?}");
             }
             None => {}
@@ -93,11 +95,17 @@ impl Mission {
         Self { replanning: Some(Replanning::Nodes { test, to_go }), ..self }
     }
 
-    /// The same mission over a DEM, whose trials may also be replanned over its posts, in any direction. A mission along a chain has no
-    /// posts, and is not replanned by them.
+    /// The same mission over a DEM, whose trials may also be replanned over its posts, in any direction: the cheapest way. A mission along
+    /// a chain has no posts, and is not replanned by them.
     #[must_use]
     pub fn with_replanning_over_posts(self, to_go: Arc<PostCosts>) -> Self {
-        Self { replanning: Some(Replanning::Posts(to_go)), ..self }
+        Self { replanning: Some(Replanning::PostCosts(to_go)), ..self }
+    }
+
+    /// The same by the most reliable way, from the start on.
+    #[must_use]
+    pub fn with_reliable_replanning_over_posts(self, to_go: Arc<PostRisks>) -> Self {
+        Self { replanning: Some(Replanning::PostRisks(to_go)), ..self }
     }
 }
 

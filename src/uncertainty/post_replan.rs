@@ -1,31 +1,39 @@
 //! Replanning over a map, by hops to its posts in any direction.
+//!
+//! Only the posts within reach of one hop are looked at: those of a window about the position.
 
 use std::{ops::RangeInclusive, sync::Arc};
 
 use nalgebra::Vector2;
 
-use super::replan::{HopReach, Replan};
+use super::replan::{HopReach, Replan, in_steps};
 use crate::{
     ballistics::{self, LineOfSight, safety_range_m},
     flight::Command,
-    graph::{Cost, MapJudge, PostCosts},
-    ground::{DemGround, MapPosition, Post},
+    graph::{Cost, MapJudge, PostCosts, PostRisks},
+    ground::{DemGround, MapPosition, NodeLattice, Post, Surface},
     quantity::SlopeInterval,
     terrain::GeoReference,
 };
 
-/// Replanning over a DEM, by the costs-to-go of its posts.
-///
-/// Only the posts within reach of one hop are looked at: those of a window about the position.
+/// The posts of a ground, as a robot that replans sees them.
 #[derive(Debug)]
-pub(super) struct PostReplan {
+struct Posts {
     ground: DemGround,
-    to_go: Arc<PostCosts>,
-    reach: HopReach,
-    /// The map of the posts.
+    lattice: NodeLattice,
+    /// Their map.
     map: GeoReference,
+    reach: HopReach,
     /// The lowest elevation, m.
     lowest_m: f64,
+}
+
+/// The line to a post that one hop may reach.
+struct Line {
+    post: Post,
+    target: MapPosition,
+    sight: LineOfSight,
+    heading: Vector2<f64>,
 }
 
 /// The posts about a position, by row and column.
@@ -34,24 +42,19 @@ struct Window {
     cols: RangeInclusive<usize>,
 }
 
-/// A post that one hop may reach.
-struct Candidate {
-    post: Post,
-    target: MapPosition,
-    sight: LineOfSight,
-    heading: Vector2<f64>,
-    /// The cost-to-go of the post.
-    rest: Cost,
-    /// A lower bound on the cost of the journey over it.
-    least: Cost,
+impl Window {
+    fn posts(&self) -> impl Iterator<Item = Post> + use<> {
+        let cols = self.cols.clone();
+        self.rows.clone().flat_map(move |row| cols.clone().map(move |col| Post { row, col }))
+    }
 }
 
-impl PostReplan {
-    pub(super) fn new(ground: DemGround, to_go: Arc<PostCosts>) -> Self {
+impl Posts {
+    fn new(ground: &DemGround, lattice: NodeLattice) -> Self {
         let dem = ground.terrain().dem();
-        let map = dem.georeference().every(to_go.lattice().stride);
+        let map = dem.georeference().every(lattice.stride);
         let (lowest_m, _) = dem.elevation_range_m();
-        Self { reach: HopReach::of(&ground), ground, to_go, map, lowest_m }
+        Self { reach: HopReach::of(ground), ground: ground.clone(), lattice, map, lowest_m }
     }
 
     /// The posts that one hop from a position may reach, and some more.
@@ -62,8 +65,7 @@ impl PostReplan {
         let HopReach { takeoff_squared, landing_squared, gravity_m_s2 } = self.reach;
         let down_m = safety_range_m((from.z_m - self.lowest_m).max(0.0), takeoff_squared.sqrt(), gravity_m_s2);
         let run_m = down_m.min((takeoff_squared + landing_squared) / (2.0 * gravity_m_s2));
-        let lattice = self.to_go.lattice();
-        let Post { row, col } = lattice.nearest(self.ground.terrain().dem().georeference(), from.at);
+        let Post { row, col } = self.lattice.nearest(self.ground.terrain().dem().georeference(), from.at);
         let about = |at: usize, step_m: f64, count: usize| {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; the cast saturates")]
             let posts = (run_m / step_m) as usize;
@@ -71,125 +73,149 @@ impl PostReplan {
             let posts = posts.saturating_add(1);
             at.saturating_sub(posts)..=at.saturating_add(posts).min(count - 1)
         };
-        Window { rows: about(row, self.map.dy_m(), lattice.rows), cols: about(col, self.map.dx_m(), lattice.cols) }
+        Window { rows: about(row, self.map.dy_m(), self.lattice.rows), cols: about(col, self.map.dx_m(), self.lattice.cols) }
     }
 
-    /// The least count of hops to the goal, at least `least`, of the posts of a window.
-    fn level(&self, window: &Window, least: u16) -> Option<u16> {
-        self.hops(window).filter_map(|(_, hops)| hops.filter(|&hops| hops >= least)).min()
-    }
-
-    fn hops<'a>(&'a self, window: &'a Window) -> impl Iterator<Item = (Post, Option<u16>)> + 'a {
-        let posts = window.rows.clone().flat_map(|row| window.cols.clone().map(move |col| Post { row, col }));
-        posts.map(|post| (post, self.to_go.hops_from(post)))
-    }
-
-    /// The posts with a count of hops to the goal that one hop may reach, those with the least bound on the cost of the journey first.
-    fn candidates(&self, from: &MapPosition, window: &Window, level: u16) -> Vec<Candidate> {
-        let at_level = self.hops(window).filter(|(_, hops)| *hops == Some(level));
-        let mut candidates: Vec<Candidate> = at_level.filter_map(|(post, _)| self.candidate(from, post)).collect();
-        candidates.sort_by_key(|candidate| (candidate.least, candidate.post));
-        candidates
-    }
-
-    fn candidate(&self, from: &MapPosition, post: Post) -> Option<Candidate> {
-        let Post { row, col } = self.to_go.lattice().post(post);
+    /// The line to a post; `None` if no hop can span it, or if the post has no elevation.
+    fn line(&self, from: &MapPosition, post: Post) -> Option<Line> {
+        let Post { row, col } = self.lattice.post(post);
         let z_m = self.ground.terrain().dem().elevation(row, col)?;
         let target = MapPosition { at: self.map.post(post.row, post.col), z_m };
         let (sight, heading) = self.reach.sight(&self.ground, from, &target)?;
-        let rest = self.to_go.of_post(post)?;
-        let least = self.to_go.effort().least_cost(sight, self.reach.gravity_m_s2) + rest;
-        Some(Candidate { post, target, sight, heading, rest, least })
+        Some(Line { post, target, sight, heading })
     }
 
-    /// The command of a hop to a candidate and the cost of the journey over it, for the choice of take-offs alone.
-    fn hop(&self, from: &MapPosition, candidate: &Candidate) -> Option<(ballistics::Arc, SlopeInterval, Cost)> {
-        let Candidate { target, sight, heading, rest, .. } = candidate;
-        let lofts = self.ground.lofts_by_walk(from, target, *sight, *heading)?;
-        let loft = self.ground.envelope().loft(self.to_go.takeoff(), *sight, lofts);
-        let arc = ballistics::Arc::new(*sight, loft, self.reach.gravity_m_s2);
-        Some((arc, lofts, self.to_go.effort().cost(&arc, 1) + *rest))
+    /// The feasible lofts along a line.
+    fn lofts(&self, from: &MapPosition, line: &Line) -> Option<SlopeInterval> {
+        self.ground.lofts_by_walk(from, &line.target, line.sight, line.heading)
     }
 
-    /// The cheapest hop to any post.
-    fn cheapest(&self, from: &MapPosition) -> Option<Command<MapPosition>> {
-        let window = self.window(from);
-        let mut least = 0;
-        while let Some(level) = self.level(&window, least) {
-            let mut best: Option<(Command<MapPosition>, Cost)> = None;
-            for candidate in self.candidates(from, &window, level) {
-                if best.as_ref().is_some_and(|(_, cost)| candidate.least >= *cost) {
-                    break;
-                }
-                let Some((arc, _, cost)) = self.hop(from, &candidate) else { continue };
-                if best.as_ref().is_none_or(|(_, known)| cost < *known) {
-                    best = Some((Command::of_arc(&arc, candidate.heading, candidate.target), cost));
-                }
-            }
-            // Hops count first: no post of more hops to the goal is better.
-            if let Some((command, _)) = best {
-                return Some(command);
-            }
-            least = level.checked_add(1)?;
-        }
-        None
-    }
-
-    /// The most reliable of the hops that lead on.
-    fn reliable(&self, judge: &MapJudge, from: &MapPosition) -> Option<Command<MapPosition>> {
-        let env = |name: &str, default: f64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
-        let (tried_max, rho, side) = (env("CH_K", 8.0) as usize, env("CH_RHO", 0.05), env("CH_SIDE", 0.0) as u16);
-        let spread = env("CH_SPREAD", 0.0) > 0.0;
-        let window = self.window(from);
-        // Posts of as many hops as the nearest one do not lead on.
-        let nearest = self.to_go.lattice().nearest(self.ground.terrain().dem().georeference(), from.at);
-        let own = self.to_go.hops_from(nearest);
-        let mut best: Option<(Command<MapPosition>, f64)> = None;
-        let (mut least, mut first) = (0, None);
-        while let Some(level) = self.level(&window, least) {
-            if best.is_some() && own.is_none_or(|own| level >= own + side) {
-                break;
-            }
-            let extra = rho * f64::from(level - first.unwrap_or(level));
-            if best.as_ref().is_some_and(|(_, weight)| *weight <= extra) {
-                break;
-            }
-            let mut tried = 0;
-            let candidates = self.candidates(from, &window, level);
-            let step = if spread { (candidates.len() / (2 * tried_max)).max(1) } else { 1 };
-            for i in (0..candidates.len()).step_by(step) {
-                let candidate = &candidates[i];
-                let Some((_, lofts, _)) = self.hop(from, candidate) else { continue };
-                let (loft, failed) = judge.command((from, &candidate.target), candidate.heading, (candidate.sight, lofts));
-                let weight = -libm::log((64.5 - f64::from(failed)) / 64.5) + extra;
-                if best.as_ref().is_none_or(|(_, known)| weight < *known) {
-                    let arc = ballistics::Arc::new(candidate.sight, loft, self.reach.gravity_m_s2);
-                    best = Some((Command::of_arc(&arc, candidate.heading, candidate.target), weight));
-                }
-                tried += 1;
-                if failed == 0 || tried == tried_max {
-                    break;
-                }
-            }
-            if tried > 0 {
-                first = first.or(Some(level));
-            }
-            let Some(next) = level.checked_add(1) else { break };
-            least = next;
-        }
-        best.map(|(command, _)| command)
+    fn is_in_steps(&self) -> bool {
+        !self.ground.hopper().limits().steps.is_continuous()
     }
 }
 
-impl Replan<MapPosition> for PostReplan {
-    fn next(&self, believed: &MapPosition) -> Option<Command<MapPosition>> {
-        if let Some(judge) = self.to_go.judge() {
-            return self.reliable(judge, believed);
-        }
-        self.cheapest(believed)
+/// Replanning over a DEM, by the costs-to-go of its posts.
+#[derive(Debug)]
+pub(super) struct CheapestPost {
+    posts: Posts,
+    to_go: Arc<PostCosts>,
+}
+
+impl CheapestPost {
+    pub(super) fn new(ground: &DemGround, to_go: &Arc<PostCosts>) -> Self {
+        Self { posts: Posts::new(ground, to_go.lattice()), to_go: Arc::clone(to_go) }
     }
 
+    /// The posts of a window from which the goal is this many hops away and that one hop may reach, those with the least bound on the
+    /// cost of the journey over them first.
+    fn lines(&self, from: &MapPosition, window: &Window, hops: u16) -> Vec<(Cost, Line)> {
+        let least = |line: &Line| {
+            let rest = self.to_go.of_post(line.post)?;
+            Some(self.to_go.effort().least_cost(line.sight, self.posts.reach.gravity_m_s2) + rest)
+        };
+        let of_hops = window.posts().filter(|post| self.to_go.hops_from(*post) == Some(hops));
+        let mut lines: Vec<(Cost, Line)> = of_hops
+            .filter_map(|post| {
+                let line = self.posts.line(from, post)?;
+                Some((least(&line)?, line))
+            })
+            .collect();
+        lines.sort_by_key(|(least, line)| (*least, line.post));
+        lines
+    }
+
+    /// The command along a line and the cost of the journey over it, if it may be lower than `best`.
+    fn hop(&self, from: &MapPosition, line: &Line, best: Option<Cost>) -> Option<(Command<MapPosition>, Cost)> {
+        let Line { post, target, sight, heading } = line;
+        let lofts = self.posts.lofts(from, line)?;
+        let loft = self.posts.ground.envelope().loft(self.to_go.takeoff(), *sight, lofts);
+        let arc = ballistics::Arc::new(*sight, loft, self.posts.reach.gravity_m_s2);
+        let cost = self.to_go.effort().cost(&arc, 1) + self.to_go.of_post(*post)?;
+        if best.is_some_and(|best| cost >= best) {
+            return None;
+        }
+        let command = if self.posts.is_in_steps() {
+            in_steps(&self.posts.ground, from, target, self.to_go.takeoff())?
+        } else {
+            Command::of_arc(&arc, *heading, *target)
+        };
+        Some((command, cost))
+    }
+}
+
+impl Replan<MapPosition> for CheapestPost {
+    fn next(&self, believed: &MapPosition) -> Option<Command<MapPosition>> {
+        let window = self.posts.window(believed);
+        let mut least = 0;
+        loop {
+            let hops = window.posts().filter_map(|post| self.to_go.hops_from(post)).filter(|&hops| hops >= least).min()?;
+            let mut best: Option<(Command<MapPosition>, Cost)> = None;
+            for (bound, line) in self.lines(believed, &window, hops) {
+                let known = best.as_ref().map(|(_, cost)| *cost);
+                if known.is_some_and(|known| bound >= known) {
+                    break;
+                }
+                best = self.hop(believed, &line, known).or(best);
+            }
+            // Hops count first: no post with more hops to go is better.
+            if let Some((command, _)) = best {
+                return Some(command);
+            }
+            least = hops.checked_add(1)?;
+        }
+    }
+}
+
+/// Replanning over a DEM, by the risks-to-go of its posts.
+#[derive(Debug)]
+pub(super) struct ReliablePost {
+    posts: Posts,
+    to_go: Arc<PostRisks>,
+}
+
+impl ReliablePost {
+    pub(super) fn new(ground: &DemGround, to_go: &Arc<PostRisks>) -> Self {
+        Self { posts: Posts::new(ground, to_go.lattice()), to_go: Arc::clone(to_go) }
+    }
+
+    /// The hops that lead on, by the estimated weight of the journey over them, the least first.
+    ///
+    /// At a post, all lead to posts of less weight than its own: no hop goes in a circle.
+    fn hops(&self, from: &MapPosition) -> Vec<(f64, Line, SlopeInterval)> {
+        let judge = self.to_go.judge();
+        let weight = |post: Post| Some(self.to_go.of_post(post)).filter(|weight| weight.is_finite());
+        let in_reach = self.posts.window(from).posts().filter_map(|post| Some((weight(post)?, self.posts.line(from, post)?)));
+        let mut lines: Vec<(f64, Line)> = in_reach.collect();
+        lines.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.post.cmp(&b.1.post)));
+        let (mut hops, mut best) = (Vec::new(), f64::INFINITY);
+        for (rest, line) in lines {
+            if rest + MapJudge::EACH_HOP >= best {
+                break;
+            }
+            let Some(lofts) = self.posts.lofts(from, &line) else { continue };
+            let total = rest + judge.estimate(self.posts.lattice.post(line.post), line.heading, (line.sight, lofts));
+            best = best.min(total);
+            hops.push((total, line, lofts));
+        }
+        hops.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.post.cmp(&b.1.post)));
+        hops
+    }
+}
+
+impl Replan<MapPosition> for ReliablePost {
+    fn next(&self, believed: &MapPosition) -> Option<Command<MapPosition>> {
+        let (hops, judge) = (self.hops(believed), self.to_go.judge());
+        if self.posts.is_in_steps() {
+            let in_steps = |line: &Line| in_steps(&self.posts.ground, believed, &line.target, judge.takeoff());
+            return hops.iter().find_map(|(_, line, _)| in_steps(line));
+        }
+        let (_, line, lofts) = hops.first()?;
+        Some(judge.command((believed, &line.target), line.heading, (line.sight, *lofts)))
+    }
+
+    /// The plan has the fewest hops, whatever their risk.
     fn follows_plan(&self) -> bool {
-        self.to_go.judge().is_none()
+        false
     }
 }

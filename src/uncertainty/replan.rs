@@ -100,7 +100,12 @@ impl HopReach {
 
     /// The line of sight from one position to another, and its heading; `None` if no hop can span it, or if the two are one.
     #[inline]
-    pub(super) fn sight(&self, ground: &DemGround, from: &MapPosition, target: &MapPosition) -> Option<(LineOfSight, Vector2<f64>)> {
+    pub(super) fn sight(
+        &self,
+        ground: &DemGround,
+        from: &MapPosition,
+        target: &MapPosition,
+    ) -> Option<(LineOfSight, Vector2<f64>)> {
         let away = target.at - from.at;
         let run_m = away.norm();
         if run_m <= ground.position_rounding_m() {
@@ -108,8 +113,8 @@ impl HopReach {
         }
         let sight = LineOfSight::new(run_m, target.z_m - from.z_m);
         let g_x = self.gravity_m_s2 * run_m;
-        let too_far = g_x * sight.min_speed_ratio() > self.takeoff_squared
-            || g_x * sight.min_speed_ratio_reversed() > self.landing_squared;
+        let too_far =
+            g_x * sight.min_speed_ratio() > self.takeoff_squared || g_x * sight.min_speed_ratio_reversed() > self.landing_squared;
         (!too_far).then(|| (sight, away / run_m))
     }
 }

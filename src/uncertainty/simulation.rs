@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::{
     Mission, MissionPoint, Observer, Policy, SimulationError, Summary, Trajectory, TrialOptions,
     mission::{MissionGround, Replanning},
-    post_replan::PostReplan,
+    post_replan::{CheapestPost, ReliablePost},
     replan::{ChainReplan, MapReplan, Replan},
     tally::{Flights, PlannedPlaces, Statistics, Tally},
     trial::{Flown, Plan, PlannedHop, Rules, Tank, fly},
@@ -318,7 +318,7 @@ fn chain_plan(mission: &Mission) -> Result<Plan<ChainPosition>, SimulationError>
         Some(Replanning::Nodes { test, to_go }) => {
             Some(Box::new(ChainReplan { test: test.clone(), to_go: Arc::clone(to_go) }) as _)
         }
-        Some(Replanning::Posts(_)) | None => None,
+        Some(Replanning::PostCosts(_) | Replanning::PostRisks(_)) | None => None,
     };
     let goal = Point2::new(mission.goal.along_m, 0.0);
     Ok(Plan { start: position(&mission.start, MissionPoint::Start)?, goal, hops, replan })
@@ -352,7 +352,8 @@ fn map_plan(mission: &Mission, ground: &DemGround) -> Result<Plan<MapPosition>, 
             let nodes = stations.map(node).collect::<Result<_, _>>()?;
             Some(Box::new(MapReplan { ground: ground.clone(), to_go: Arc::clone(to_go), nodes }))
         }
-        Some(Replanning::Posts(to_go)) => Some(Box::new(PostReplan::new(ground.clone(), Arc::clone(to_go)))),
+        Some(Replanning::PostCosts(to_go)) => Some(Box::new(CheapestPost::new(ground, to_go))),
+        Some(Replanning::PostRisks(to_go)) => Some(Box::new(ReliablePost::new(ground, to_go))),
         None => None,
     };
     Ok(Plan { start, goal: goal.at, hops, replan })

@@ -200,7 +200,7 @@ impl Judge {
         if matches!(self.trials, Trials::Slack) {
             return self.test.loft(TakeoffChoice::MidRange, sight, lofts);
         }
-        most_reliable(self.test.envelope(), (sight, lofts), |loft, enough| survival(loft, enough).failed).0
+        most_reliable(self.test.envelope(), (sight, lofts), |loft, enough| survival(loft, enough).failed)
     }
 
     /// The weight of a hop with a command.
@@ -303,14 +303,14 @@ impl Judge {
     }
 }
 
-/// Of nine angles over the window, from the middle outwards, the first that the most draws survive: its loft, and how many fail.
+/// Of nine angles over the window, from the middle outwards, the first that the most draws survive, as a loft.
 ///
 /// `failures` counts the draws that fail with a loft; it may end at its second argument, from which on they are too many.
 fn most_reliable(
     envelope: &FlightEnvelope,
     (sight, lofts): (LineOfSight, SlopeInterval),
     failures: impl Fn(f64, u32) -> u32,
-) -> (f64, u32) {
+) -> f64 {
     const SHARES: [f64; 8] = [0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9];
     let middle = envelope.loft(TakeoffChoice::MidRange, sight, lofts);
     let windows = envelope.takeoff_speeds().windows(sight, lofts, envelope.gravity_m_s2());
@@ -329,7 +329,7 @@ fn most_reliable(
             break;
         }
     }
-    (best, least)
+    best
 }
 
 /// The least success that a weight tells from none: a certain failure has a finite weight, so that paths with fewer of them are better.

@@ -7,10 +7,12 @@ mod costs_to_go;
 mod layer_bits;
 mod mobility;
 mod paths;
+mod risks_to_go;
 mod search;
 
 pub use crate::ground::{MapError, NodeLattice, Post, PostHops, PostHopsSize, PostRefusal};
-pub use costs_to_go::{costs_to_go, reliable_costs_to_go};
+pub use costs_to_go::costs_to_go;
 pub use mobility::{Mobility, SECTORS, mobility};
 pub use paths::{MapHop, joined, path_hops, verify};
+pub use risks_to_go::risks_to_go;
 pub use search::{HopMap, Journey, NO_GROUND, NOT_SEARCHED, Search, Source, UNREACHED, search};

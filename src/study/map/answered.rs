@@ -6,7 +6,10 @@ use super::{super::Defect, MapQuestion, MapStudyError, PreparedMap, Spot};
 use crate::{
     path::HopPath,
     progress::Progress,
-    reach::map::{HopMap, Journey, MapHop, Mobility, PostHops, Search, Source, joined, mobility, path_hops, reliable_costs_to_go, search, verify},
+    reach::map::{
+        HopMap, Journey, MapHop, Mobility, PostHops, Search, Source, costs_to_go, joined, mobility, path_hops, risks_to_go, search,
+        verify,
+    },
     report::{GoalRecord, HopRecord, MapAnswer, MapSummary, PropellantShortage, SimulationRecord, TotalsRecord},
     scenario::UncertaintyKeys,
     study::{Extremes, TrialGround, constant_gravity_warnings},
@@ -170,8 +173,13 @@ impl PreparedMap {
             let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
             let mut mission = Mission::over_dem(self.ground.clone(), path.clone(), first.takeoff, last.landing);
             if let Some(hops) = &hops {
-                let to_go = reliable_costs_to_go(hops, goal.post, (options.effort, options.takeoff), &keys.errors, progress)?;
-                mission = mission.with_replanning_over_posts(Arc::new(to_go));
+                mission = if question.weighs_risk() {
+                    let risks = risks_to_go(hops, goal.post, (&keys.errors, options.takeoff), progress)?;
+                    mission.with_reliable_replanning_over_posts(Arc::new(risks))
+                } else {
+                    let criterion = (options.effort, options.takeoff);
+                    mission.with_replanning_over_posts(Arc::new(costs_to_go(hops, goal.post, criterion, progress)?))
+                };
             }
             let summary = Simulation::new(&mission, keys.errors)?.run(&keys.options(), &mut (), progress)?;
             Ok(Some(SimulationRecord::new(&summary, path.hops.len())))

@@ -2,12 +2,14 @@
 
 use super::{MapMemory, MapQuestion, MapStudyError, NamedPlace};
 use crate::{
+    graph::ReliabilityUse,
     ground::DemGround,
     quantity::MapPoint,
     reach::map::{NodeLattice, Post},
     scenario::UncertaintyKeys,
     study::{DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body},
     terrain::{Dem, GeoReference, MapProjection, NoProjection, check_map_scale},
+    uncertainty::Uncertainty,
 };
 
 /// A requested position and the post of the map nearest to it.
@@ -101,6 +103,12 @@ impl MapQuestion<'_> {
     /// The errors and options of the trials, `None` if none are asked for.
     pub fn trial_keys(&self) -> Option<UncertaintyKeys> {
         self.trials.then(|| self.scenario.uncertainty.unwrap_or_default())
+    }
+
+    /// Whether a robot that replans goes the most reliable way, instead of the one of fewest hops.
+    pub(super) fn weighs_risk(&self) -> bool {
+        let has_errors = self.scenario.uncertainty.is_some_and(|keys| keys.errors != Uncertainty::NONE);
+        has_errors && self.scenario.risk != ReliabilityUse::Ignored
     }
 }
 
