@@ -39,7 +39,7 @@ pub(super) enum MissionGround {
 #[derive(Clone, Debug)]
 pub(super) enum Replanning {
     /// The chain of the nodes, and the cost-to-go of each node.
-    Nodes { test: HopTest, to_go: Arc<CostToGo> },
+    Nodes { test: Box<HopTest>, to_go: Arc<CostToGo> },
     /// The costs-to-go of the posts of the DEM.
     PostCosts(Arc<PostCosts>),
     /// The risks-to-go of the posts of the DEM.
@@ -92,7 +92,7 @@ impl Mission {
     /// The same mission, whose trials may also be replanned over nodes of this chain.
     #[must_use]
     pub fn with_replanning(self, test: HopTest, to_go: Arc<CostToGo>) -> Self {
-        Self { replanning: Some(Replanning::Nodes { test, to_go }), ..self }
+        Self { replanning: Some(Replanning::Nodes { test: Box::new(test), to_go }), ..self }
     }
 
     /// The same mission over a DEM, whose trials may also be replanned over its posts, in any direction: the cheapest way. A mission along

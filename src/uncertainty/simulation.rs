@@ -316,7 +316,7 @@ fn chain_plan(mission: &Mission) -> Result<Plan<ChainPosition>, SimulationError>
     let hops = planned.collect::<Result<_, SimulationError>>()?;
     let replan = match &mission.replanning {
         Some(Replanning::Nodes { test, to_go }) => {
-            Some(Box::new(ChainReplan { test: test.clone(), to_go: Arc::clone(to_go) }) as _)
+            Some(Box::new(ChainReplan { test: test.as_ref().clone(), to_go: Arc::clone(to_go) }) as _)
         }
         Some(Replanning::PostCosts(_) | Replanning::PostRisks(_)) | None => None,
     };

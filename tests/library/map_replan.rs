@@ -96,7 +96,7 @@ fn the_cost_to_go_of_every_post_is_that_of_a_search_from_it() {
             let at_goal = lattice.index(goal);
             let expected = u64::try_from(out.hops[at_goal]).ok();
             let found = to_go.of_post(post);
-            assert_eq!(found.map(|cost| cost.hops()), expected, "{number}: {post:?} to {goal:?}");
+            assert_eq!(found.map(chta::graph::Cost::hops), expected, "{number}: {post:?} to {goal:?}");
             let risk = risks.of_post(post);
             assert_eq!(risk.is_finite(), found.is_some(), "{number}: {post:?} to {goal:?}");
             let Some(cost) = found else {
