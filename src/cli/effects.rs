@@ -146,6 +146,8 @@ impl Purpose {
             ("search", "takeoff_angle" | "split" | "risk" | "risk_extra_hops_max") if by_success => true,
             ("search", "takeoff_angle") => !matches!(self, Self::Trade | Self::Fan | Self::Map { goals: false, effort: false, .. }),
             ("search", "split") => !on_a_dem && !matches!(self, Self::Hop | Self::Trade),
+            // A robot that replans over a map weighs it.
+            ("search", "risk") if matches!(self, Self::Map { trials: true, .. }) => true,
             ("search", "risk" | "risk_extra_hops_max") => by_risk,
             ("budget", _) => by_risk || matches!(self, Self::Require | Self::Trade),
             ("derating", _) => !matches!(self, Self::Map { .. }),

@@ -112,11 +112,6 @@ fn of_map_study(error: &MapStudyError) -> Option<String> {
              --stride",
             first.x, first.y, second.x, second.y, post.x, post.y
         )),
-        MapStudyError::Replanning => Some(
-            "--simulate: uncertainty.policy is \"replan\", expected \"open-loop\": replanning needs the nodes of a transect search; set \
-             uncertainty.policy = \"open-loop\", or use `chta simulate` on a transect"
-                .to_owned(),
-        ),
         MapStudyError::TooMuchMemory { needed_bytes, .. } => Some(format!(
             "--memory-max-mib: {error}; the options for that: --stride N, fewer of --effort, --return, --mobility and \
              --predecessor-output, or --memory-max-mib {}",

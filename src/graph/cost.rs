@@ -2,7 +2,7 @@
 
 use std::{cmp::Ordering, ops::Add};
 
-use crate::ballistics::Arc;
+use crate::ballistics::{Arc, LineOfSight};
 
 /// The second criterion, after the number of hops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -75,6 +75,26 @@ impl Effort {
 }
 
 crate::quantity::by_name!(Effort, Effort::ALL);
+
+impl Effort {
+    /// A lower bound on the cost of a hop over a line of sight.
+    #[inline]
+    pub fn least_cost(self, sight: LineOfSight, gravity_m_s2: f64) -> Cost {
+        match self {
+            Self::TakeoffSpeed | Self::Energy | Self::PeakSpeed => self.cost(&Arc::new(sight, sight.secant(), gravity_m_s2), 1),
+            // A flat and fast arc takes so little time that a bound on it is not worth computing.
+            Self::Time => Cost::of_hops(1),
+        }
+    }
+
+    /// The cost of a path of some hops with this effort altogether.
+    pub(crate) const fn cost_of_path(self, hops: u64, effort: f64) -> Cost {
+        match self {
+            Self::PeakSpeed => Cost { hops, sum: 0.0, peak: effort },
+            Self::TakeoffSpeed | Self::Energy | Self::Time => Cost { hops, sum: effort, peak: 0.0 },
+        }
+    }
+}
 
 /// The unit of an effort.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,7 +178,6 @@ impl Ord for Cost {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ballistics::LineOfSight;
 
     #[test]
     fn hops_are_compared_before_effort() {

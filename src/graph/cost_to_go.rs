@@ -3,13 +3,13 @@
 use std::{cmp::Reverse, collections::BinaryHeap};
 
 use super::{
-    Cost, Edge, Effort, HopGraph, Leg, NodeSet, ReliabilityOptions, SearchError, SearchOptions, judge::Judge, nodes::around,
+    Cost, Edge, HopGraph, Leg, NodeSet, ReliabilityOptions, SearchError, SearchOptions, judge::Judge, nodes::around,
     reliability_policy::ReliabilityPolicy,
 };
 use nalgebra::Vector2;
 
 use crate::{
-    ballistics::{Arc, LineOfSight, TakeoffChoice},
+    ballistics::{LineOfSight, TakeoffChoice},
     chain::Station,
     ground::MapPosition,
     hop::HopTest,
@@ -136,12 +136,7 @@ impl CostToGo {
     /// A lower bound on the cost of a hop over this line of sight.
     #[inline]
     pub fn least_cost(&self, sight: LineOfSight, gravity_m_s2: f64) -> Cost {
-        let fastest = Arc::new(sight, sight.secant(), gravity_m_s2);
-        match self.options.effort {
-            Effort::TakeoffSpeed | Effort::Energy | Effort::PeakSpeed => self.options.effort.cost(&fastest, 1),
-            // A flat and fast arc takes so little time that a bound on it is not worth computing.
-            Effort::Time => Cost::of_hops(1),
-        }
+        self.options.effort.least_cost(sight, gravity_m_s2)
     }
 
     /// The best first leg from any station of the chain, which need not be a node. `None` if no node that leads to the goal
@@ -291,7 +286,7 @@ mod tests {
     use super::*;
     use crate::{
         chain::{ConstrainedChain, PolygonalChain},
-        graph::{Outcome, PointSpacing, search},
+        graph::{Effort, Outcome, PointSpacing, search},
         quantity::ChainPoint,
         world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
     };

@@ -18,6 +18,8 @@ mod goals;
 mod judge;
 mod local_reach;
 mod nodes;
+mod post_costs;
+mod post_risks;
 pub mod proof;
 mod questions;
 mod reachable;
@@ -33,6 +35,8 @@ pub use edges::{Edge, EdgeReference, HopGraph};
 pub use frontier::{Frontier, NearestMiss};
 pub use judge::{RiskModel, TakeoffScatter};
 pub use nodes::{NodeSet, NodesError, PointSpacing};
+pub use post_costs::PostCosts;
+pub use post_risks::PostRisks;
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
 pub use reliability::{
@@ -40,4 +44,4 @@ pub use reliability::{
 };
 pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchError, SearchOptions, search, search_pairs};
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};
-pub(crate) use {reachable::reachable_nodes, search::search_one};
+pub(crate) use {judge::MapJudge, reachable::reachable_nodes, search::search_one};

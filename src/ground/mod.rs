@@ -9,6 +9,7 @@
 //! The independent checker uses [`Surface`] alone; planners use [`Windows`], or a fast equivalent with the same results; trials
 //! follow arcs with [`FirstContact`].
 
+mod around_post;
 mod chain;
 mod chain_flight;
 mod dem;

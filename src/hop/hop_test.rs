@@ -165,6 +165,12 @@ impl HopTest {
         self.envelope.takeoff_speeds().windows(sight, lofts, self.gravity_m_s2())
     }
 
+    /// The flight envelope of the chain's hopper under its gravity.
+    #[inline]
+    pub(crate) const fn envelope(&self) -> &FlightEnvelope {
+        &self.envelope
+    }
+
     /// The loft to fly of an interval of [`lofts`](Self::lofts) over a line of sight.
     #[inline]
     pub fn loft(&self, choice: TakeoffChoice, sight: LineOfSight, lofts: SlopeInterval) -> f64 {

@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 use crate::{
     chain::Station,
-    graph::CostToGo,
+    graph::{CostToGo, PostCosts, PostRisks},
     ground::{ChainGround, ContactPoint, DemGround, Surface},
     hop::HopTest,
     path::HopPath,
@@ -35,13 +35,20 @@ pub(super) enum MissionGround {
     Map(DemGround),
 }
 
-/// The data for replanning: the chain of the nodes, and the cost-to-go of each node.
+/// The data for replanning.
 #[derive(Clone, Debug)]
-pub(super) struct Replanning {
-    pub(super) test: HopTest,
-    pub(super) to_go: Arc<CostToGo>,
-    /// The ground under the limits that planning may use, over a DEM; `None`: that of the trials.
-    pub(super) over: Option<DemGround>,
+pub(super) enum Replanning {
+    /// The chain of the nodes, and the cost-to-go of each node.
+    Nodes {
+        test: Box<HopTest>,
+        to_go: Arc<CostToGo>,
+        /// The ground under the limits that planning may use, over a DEM; `None`: that of the trials.
+        over: Option<Box<DemGround>>,
+    },
+    /// The costs-to-go of the posts of the DEM.
+    PostCosts(Arc<PostCosts>),
+    /// The risks-to-go of the posts of the DEM.
+    PostRisks(Arc<PostRisks>),
 }
 
 impl Mission {
@@ -71,9 +78,18 @@ impl Mission {
                 write!(digest, "{:?}{:?}{friction:?}{keep_out:?}{:?}", ground.envelope(), ground.surface(), ground.terrain().dem())
             }
         };
-        if let Some(Replanning { test, to_go, over: _ }) = &self.replanning {
-            let _ = chain_text(&mut digest, test);
-            let _ = write!(digest, "{to_go:?}");
+        match &self.replanning {
+            Some(Replanning::Nodes { test, to_go, over: _ }) => {
+                let _ = chain_text(&mut digest, test);
+                let _ = write!(digest, "{to_go:?}");
+            }
+            Some(Replanning::PostCosts(to_go)) => {
+                let _ = write!(digest, "{to_go:?}");
+            }
+            Some(Replanning::PostRisks(to_go)) => {
+                let _ = write!(digest, "{to_go:?}");
+            }
+            None => {}
         }
         digest.0.finalize().iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
     }
@@ -81,16 +97,29 @@ impl Mission {
     /// The same mission, whose trials may also be replanned over nodes of this chain.
     #[must_use]
     pub fn with_replanning(self, test: HopTest, to_go: Arc<CostToGo>) -> Self {
-        Self { replanning: Some(Replanning { test, to_go, over: None }), ..self }
+        Self { replanning: Some(Replanning::Nodes { test: Box::new(test), to_go, over: None }), ..self }
     }
 
-    /// The same mission, replanned over this ground of a DEM, whose limits planning may use; without replanning, unchanged.
+    /// The same mission, replanned over this ground of a DEM, whose limits planning may use; unchanged unless it is replanned over nodes.
     #[must_use]
     pub fn planned_over(mut self, ground: DemGround) -> Self {
-        if let Some(replanning) = &mut self.replanning {
-            replanning.over = Some(ground);
+        if let Some(Replanning::Nodes { over, .. }) = &mut self.replanning {
+            *over = Some(Box::new(ground));
         }
         self
+    }
+
+    /// The same mission over a DEM, whose trials may also be replanned over its posts, in any direction: the cheapest way. A mission along
+    /// a chain has no posts, and is not replanned by them.
+    #[must_use]
+    pub fn with_replanning_over_posts(self, to_go: Arc<PostCosts>) -> Self {
+        Self { replanning: Some(Replanning::PostCosts(to_go)), ..self }
+    }
+
+    /// The same by the most reliable way, from the start on.
+    #[must_use]
+    pub fn with_reliable_replanning_over_posts(self, to_go: Arc<PostRisks>) -> Self {
+        Self { replanning: Some(Replanning::PostRisks(to_go)), ..self }
     }
 }
 

@@ -50,6 +50,7 @@ mod mission;
 mod options;
 mod outcome;
 mod paired;
+mod post_replan;
 mod quantiles;
 mod rates;
 mod record;

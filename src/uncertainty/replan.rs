@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use nalgebra::Vector2;
+
 use crate::{
     ballistics::{self, LineOfSight, TakeoffChoice},
     flight::Command,
@@ -17,10 +19,15 @@ use crate::{
 pub(super) trait Replan<C>: Send + Sync + std::fmt::Debug {
     /// The best next hop; `None` if no hop leads to the goal.
     fn next(&self, believed: &C) -> Option<Command<C>>;
+
+    /// Whether the planned hop is the best one at a planned position.
+    fn follows_plan(&self) -> bool {
+        true
+    }
 }
 
 /// The command of a machine in steps that is nearest to an exact one, aimed at where it lands.
-fn in_steps<G: SteppedGround>(
+pub(super) fn in_steps<G: SteppedGround>(
     ground: &G,
     takeoff: &G::Contact,
     aim: &G::Contact,
@@ -67,6 +74,48 @@ impl Replan<ChainPosition> for ChainReplan {
             (Edge::Along(along), length) => along.arc(test, length?.1, choice),
         };
         Some(Command::of_arc(&arc, heading_of(direction), ChainPosition::on_chain(landing)))
+    }
+}
+
+/// How far one hop reaches: the parabolas of safety of the greatest speeds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HopReach {
+    /// The greatest take-off speed, squared, m^2/s^2.
+    pub(super) takeoff_squared: f64,
+    /// The greatest landing speed of an arc, squared, m^2/s^2; infinite with brakes.
+    pub(super) landing_squared: f64,
+    pub(super) gravity_m_s2: f64,
+}
+
+impl HopReach {
+    pub(super) fn of(ground: &DemGround) -> Self {
+        let limits = ground.hopper().limits();
+        let squared = |speed_m_s: f64| tolerant_speed_m_s(speed_m_s) * tolerant_speed_m_s(speed_m_s) * (1.0 + SPEED_TOLERANCE);
+        Self {
+            takeoff_squared: squared(limits.takeoff_speed_max_m_s),
+            landing_squared: squared(limits.arc_landing_speed_max_m_s()),
+            gravity_m_s2: ground.gravity_m_s2(),
+        }
+    }
+
+    /// The line of sight from one position to another, and its heading; `None` if no hop can span it, or if the two are one.
+    #[inline]
+    pub(super) fn sight(
+        &self,
+        ground: &DemGround,
+        from: &MapPosition,
+        target: &MapPosition,
+    ) -> Option<(LineOfSight, Vector2<f64>)> {
+        let away = target.at - from.at;
+        let run_m = away.norm();
+        if run_m <= ground.position_rounding_m() {
+            return None;
+        }
+        let sight = LineOfSight::new(run_m, target.z_m - from.z_m);
+        let g_x = self.gravity_m_s2 * run_m;
+        let too_far =
+            g_x * sight.min_speed_ratio() > self.takeoff_squared || g_x * sight.min_speed_ratio_reversed() > self.landing_squared;
+        (!too_far).then(|| (sight, away / run_m))
     }
 }
 
@@ -117,20 +166,11 @@ impl MapReplan {
         let Self { ground, to_go, nodes } = self;
         let target = nodes[node];
         let rest = to_go.of_node(NodeId(node))?;
-        let away = target.at - from.at;
-        let run_m = away.norm();
-        let (limits, g) = (ground.hopper().limits(), ground.gravity_m_s2());
-        if run_m <= ground.position_rounding_m() {
+        let g = ground.gravity_m_s2();
+        let (sight, heading) = HopReach::of(ground).sight(ground, from, &target)?;
+        if best.is_some_and(|best| to_go.least_cost(sight, g) + rest >= best) {
             return None;
         }
-        let sight = LineOfSight::new(run_m, target.z_m - from.z_m);
-        let squared = |speed_m_s: f64| tolerant_speed_m_s(speed_m_s) * tolerant_speed_m_s(speed_m_s) * (1.0 + SPEED_TOLERANCE);
-        let too_far = g * run_m * sight.min_speed_ratio() > squared(limits.takeoff_speed_max_m_s)
-            || g * run_m * sight.min_speed_ratio_reversed() > squared(limits.arc_landing_speed_max_m_s());
-        if too_far || best.is_some_and(|best| to_go.least_cost(sight, g) + rest >= best) {
-            return None;
-        }
-        let heading = away / run_m;
         let lofts = ground.lofts_by_walk(from, &target, sight, heading)?;
         let arc = ballistics::Arc::new(sight, ground.envelope().loft(to_go.options().takeoff, sight, lofts), g);
         let cost = to_go.options().effort.cost(&arc, 1) + rest;

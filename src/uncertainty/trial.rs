@@ -166,10 +166,10 @@ impl<G: FirstContact + Windows> Journey<'_, G> {
                 if self.is_at_goal(&believed) {
                     return Err(self.arrived());
                 }
-                // At a planned position the planned hop is optimal.
+                let replan = self.plan.replan.as_ref();
                 let command = match planned {
-                    Some(hop) if hop.from == believed => Ok(hop.command),
-                    _ => self.plan.replan.as_ref().and_then(|replan| replan.next(&believed)).ok_or(TrialOutcome::Stuck),
+                    Some(hop) if hop.from == believed && replan.is_none_or(|replan| replan.follows_plan()) => Ok(hop.command),
+                    _ => replan.and_then(|replan| replan.next(&believed)).ok_or(TrialOutcome::Stuck),
                 };
                 // A robot that bounces aims short.
                 command.map(|command| resting_at(self.nominal, &believed, command))

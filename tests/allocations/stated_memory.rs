@@ -77,6 +77,9 @@ fn a_map_holds_at_most_the_bytes_that_it_states() {
         (6.0, "clearance_m = 0.2\n", 1, [true, false, false, true], 1),
         (4.0, "footprint_m = 3.0\n", 1, [false, true, false, false], 2),
         (9.0, "", 3, [true; 4], 3),
+        // Replanned trials, by costs and by risks.
+        (4.0, "[uncertainty]\ntrials = 20\n", 1, [false; 4], 1),
+        (4.0, "[uncertainty]\ntrials = 20\ntakeoff_speed_sigma_fraction = 0.02\n", 1, [true, false, false, false], 1),
     ] {
         let scenario = scenario(&format!("takeoff_speed_max_m_s = {speed_m_s}\nlanding_speed_max_m_s = {speed_m_s}\n{footprint}"));
         let question = MapQuestion {
@@ -84,13 +87,13 @@ fn a_map_holds_at_most_the_bytes_that_it_states() {
             base: Path::new(""),
             dem: &data,
             starts: [start(96.0, 84.0), start(20.0, 20.0), start(170.0, 150.0)][..starts].to_vec(),
-            goals: Vec::new(),
+            goals: if footprint.contains("trials") { vec![start(112.0, 84.0)] } else { Vec::new() },
             stride,
             effort,
             returns,
             mobility,
             predecessors,
-            trials: false,
+            trials: footprint.contains("trials"),
             hops_max: None,
             memory_max_bytes: None,
         };

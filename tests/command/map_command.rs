@@ -428,8 +428,9 @@ fn paths_are_verified_and_simulated_the_same_for_any_number_of_threads() {
     desk.write("errors.toml", scenario);
     let asked = ["map", "walled.asc", "--start", "102,205", "--goal", "108,206", "--goal", "114,205", "--simulate", "--scenario"];
     let document = |more: &[&str]| desk.json(&[&asked[..], more].concat());
-    let found = document(&["errors.toml", "--threads", "1"]);
-    assert_eq!(found["goals"], document(&["errors.toml", "--threads", "3"])["goals"]);
+    let open_loop = ["errors.toml", "--set", "uncertainty.policy=open-loop"];
+    let found = document(&[&open_loop[..], &["--threads", "1"]].concat());
+    assert_eq!(found["goals"], document(&[&open_loop[..], &["--threads", "3"]].concat())["goals"]);
     let [reached, walled_in] = [&found["goals"][0], &found["goals"][1]];
     assert_eq!(reached["verified"], true);
     let simulation = &reached["simulation"];
@@ -442,9 +443,16 @@ fn paths_are_verified_and_simulated_the_same_for_any_number_of_threads() {
     let exact = document(&["hopper.toml", "--set", "uncertainty.trials=50"]);
     assert_eq!(exact["goals"][0]["simulation"]["success_rate"], 1.0);
     assert!(exact["warnings"].to_string().contains("no errors are given"), "{}", exact["warnings"]);
-    let refused = desk.run(&[&asked[..], &["errors.toml", "--set", "uncertainty.policy=replan"]].concat());
-    assert_eq!(refused.status, 2);
-    assert!(refused.stderr.contains("--simulate") && refused.stderr.contains("open-loop"), "{}", refused.stderr);
-    // What it proposes works.
-    document(&["errors.toml", "--set", "uncertainty.policy=open-loop"]);
+    // Where errors are given, a robot replans unless the scenario says otherwise: over the posts, by their risks or by their costs.
+    let mut rates = vec![rate];
+    for risk in ["ignored", "traded"] {
+        let replanned = |threads| document(&["errors.toml", "--set", &format!("search.risk={risk}"), "--threads", threads]);
+        let found = replanned("1");
+        assert_eq!(found["goals"], replanned("3")["goals"], "{risk}");
+        assert!(!found["warnings"].to_string().contains("search.risk"), "{}", found["warnings"]);
+        let simulation = &found["goals"][0]["simulation"];
+        assert_eq!((simulation["trials"].as_u64(), simulation["policy"].as_str()), (Some(400), Some("replan")));
+        rates.push(simulation["success_rate"].as_f64().unwrap());
+    }
+    assert!(rates[2] > rates[0] && rates[2] > rates[1] && rates[2] > 0.95, "open loop, by costs, by risks: {rates:?}");
 }

@@ -32,6 +32,7 @@ mod heading_steps;
 mod layers;
 mod map_equality;
 mod map_projection;
+mod map_replan;
 mod map_sources;
 mod map_verified;
 mod map_world;

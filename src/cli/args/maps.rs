@@ -142,6 +142,7 @@ pub(crate) struct MapArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) mobility: Option<PathBuf>,
     /// Also fly the path to every goal many times under the errors of `[uncertainty]`, in three dimensions, open loop
+    /// or replanned over the posts of the map
     #[arg(long)]
     pub(crate) simulate: bool,
     /// Hops to every goal (CSV) to write

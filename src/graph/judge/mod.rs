@@ -1,10 +1,14 @@
 //! The risk of an edge: the share of flown draws that fail, or the slack of its angle.
 
+mod over_map;
+
 use nalgebra::{Point2, Vector2};
+
+pub(crate) use over_map::MapJudge;
 
 use super::{Edge, HopGraph, SearchOptions};
 use crate::{
-    ballistics::{Arc, LineOfSight, TakeoffChoice, loft_at_share},
+    ballistics::{Arc, FlightEnvelope, LineOfSight, TakeoffChoice, loft_at_share},
     chain::Station,
     flight::{Command, Distribution, HopTrials, JudgedHop, SEARCHED_DRAWS, Survival, Uncertainty, UncertaintyProblem},
     ground::{ChainGround, ChainPosition, DemGround, MapPosition, Surface, heading_of},
@@ -207,29 +211,12 @@ impl Judge {
         }))
     }
 
-    /// Of nine angles over the window, from the middle outwards, the first that the most draws survive.
+    /// The loft of the most reliable command.
     fn most_reliable(&self, sight: LineOfSight, lofts: SlopeInterval, survival: impl Fn(f64, u32) -> Survival) -> f64 {
-        const SHARES: [f64; 8] = [0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9];
-        let middle = self.test.loft(TakeoffChoice::MidRange, sight, lofts);
         if matches!(self.trials, Trials::Slack) {
-            return middle;
+            return self.test.loft(TakeoffChoice::MidRange, sight, lofts);
         }
-        let windows: Vec<SlopeInterval> = self.test.windows(sight, lofts).map(|window| window.lofts).collect();
-        let spread = SHARES.map(|share| loft_at_share(sight, lofts, share));
-        let allowed = spread.into_iter().filter(|loft| windows.iter().any(|window| window.contains(*loft)));
-        // A machine of few speeds has few angles.
-        let single = windows.iter().filter(|window| window.lower == window.upper).map(|window| window.lower);
-        let (mut best, mut least) = (middle, u32::MAX);
-        for loft in std::iter::once(middle).chain(allowed).chain(single) {
-            let failed = survival(loft, least).failed;
-            if failed < least {
-                (best, least) = (loft, failed);
-            }
-            if least == 0 {
-                break;
-            }
-        }
-        best
+        most_reliable(self.test.envelope(), (sight, lofts), |loft, enough| survival(loft, enough).failed)
     }
 
     /// The weight of a hop with a command.
@@ -330,6 +317,35 @@ impl Judge {
         (last..along.hops()).for_each(|i| fly(i, 1));
         Judged { weight, loft: None, spread_m2 }
     }
+}
+
+/// Of nine angles over the window, from the middle outwards, the first that the most draws survive, as a loft.
+///
+/// `failures` counts the draws that fail with a loft; it may end at its second argument, from which on they are too many.
+fn most_reliable(
+    envelope: &FlightEnvelope,
+    (sight, lofts): (LineOfSight, SlopeInterval),
+    failures: impl Fn(f64, u32) -> u32,
+) -> f64 {
+    const SHARES: [f64; 8] = [0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9];
+    let middle = envelope.loft(TakeoffChoice::MidRange, sight, lofts);
+    let windows = envelope.takeoff_speeds().windows(sight, lofts, envelope.gravity_m_s2());
+    let windows: Vec<SlopeInterval> = windows.map(|window| window.lofts).collect();
+    let spread = SHARES.map(|share| loft_at_share(sight, lofts, share));
+    let allowed = spread.into_iter().filter(|loft| windows.iter().any(|window| window.contains(*loft)));
+    // A machine of few speeds has few angles.
+    let single = windows.iter().filter(|window| window.lower == window.upper).map(|window| window.lower);
+    let (mut best, mut least) = (middle, u32::MAX);
+    for loft in std::iter::once(middle).chain(allowed).chain(single) {
+        let failed = failures(loft, least);
+        if failed < least {
+            (best, least) = (loft, failed);
+        }
+        if least == 0 {
+            break;
+        }
+    }
+    best
 }
 
 /// The least success that a weight tells from none: a certain failure has a finite weight, so that paths with fewer of them are better.

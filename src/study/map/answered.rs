@@ -1,10 +1,15 @@
 //! The search, the paths and their check, the trials, and the answer that they make.
 
+use std::sync::Arc;
+
 use super::{super::Defect, MapQuestion, MapStudyError, PreparedMap, Spot};
 use crate::{
     path::HopPath,
     progress::Progress,
-    reach::map::{HopMap, Journey, MapHop, Mobility, PostHops, Search, Source, joined, mobility, path_hops, search, verify},
+    reach::map::{
+        HopMap, Journey, MapHop, Mobility, PostHops, Search, Source, costs_to_go, joined, mobility, path_hops, risks_to_go, search,
+        verify,
+    },
     report::{GoalRecord, HopRecord, MapAnswer, MapSummary, PropellantShortage, SimulationRecord, TotalsRecord},
     scenario::UncertaintyKeys,
     study::{Extremes, TrialGround, constant_gravity_warnings, sense::unplanned_bounces},
@@ -59,7 +64,7 @@ impl PreparedMap {
         let found = rayon::scope(|_| self.found(question, progress))?;
         let Found { out, back, mobility, predecessors, goal_hops, paths, warnings: of_ends } = found;
         let trials = match &keys {
-            Some(keys) => self.flown(&paths, keys, progress)?,
+            Some(keys) => self.flown(question, &paths, keys, progress)?,
             None => vec![None; paths.len()],
         };
         let scenario = question.scenario;
@@ -77,9 +82,9 @@ impl PreparedMap {
         answer.goals =
             goals.map(|((goal, path), trials)| self.goal_record(goal, (&out, back.as_ref()), path.as_ref(), trials)).collect();
         let mut warnings = self.warnings.clone();
-        if let Some((scenario, of_errors)) = &flown {
+        if let Some(((scenario, of_errors), keys)) = flown.as_ref().zip(keys.as_ref()) {
             warnings.extend(of_errors.iter().cloned());
-            warnings.extend(scenario.trial_warnings(&[Policy::OpenLoop], &self.trial_ground(&paths)));
+            warnings.extend(scenario.trial_warnings(&[keys.policy], &self.trial_ground(&paths)));
         }
         warnings.extend(of_ends);
         if keys.is_some() {
@@ -156,20 +161,34 @@ impl PreparedMap {
         TrialGround { friction_max: of_raster.or(constant), extent_m: (bounds.max - bounds.min).norm(), journey_m: None, hops }
     }
 
-    /// Flies the path to every reachable goal many times.
+    /// Flies the path to every reachable goal many times: a robot that replans goes to the goal of its path, whatever others are nearer.
     fn flown(
         &self,
+        question: &MapQuestion<'_>,
         paths: &[Option<HopPath>],
         keys: &UncertaintyKeys,
         progress: &dyn Progress,
     ) -> Result<Vec<Option<SimulationRecord>>, MapStudyError> {
-        let fly = |path: &HopPath| {
+        let options = &question.scenario.search;
+        let replans = keys.policy == Policy::Replan;
+        let hops = replans.then(|| PostHops::new(self.ground.clone(), self.lattice.stride)).transpose()?;
+        let fly = |goal: &Spot, path: &HopPath| {
             let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
-            let mission = Mission::over_dem(self.ground.clone(), path.clone(), first.takeoff, last.landing);
+            let mut mission = Mission::over_dem(self.ground.clone(), path.clone(), first.takeoff, last.landing);
+            if let Some(hops) = &hops {
+                mission = if question.weighs_risk(&keys.errors) {
+                    let risks = risks_to_go(hops, goal.post, (&keys.errors, options.takeoff), progress)?;
+                    mission.with_reliable_replanning_over_posts(Arc::new(risks))
+                } else {
+                    let criterion = (options.effort, options.takeoff);
+                    mission.with_replanning_over_posts(Arc::new(costs_to_go(hops, goal.post, criterion, progress)?))
+                };
+            }
             let summary = Simulation::new(&mission, keys.errors.clone())?.run(&keys.options(), &mut (), progress)?;
             Ok(Some(SimulationRecord::new(&summary, path.hops.len())))
         };
-        paths.iter().map(|path| path.as_ref().map_or(Ok(None), fly)).collect()
+        let goals = self.goals.iter().zip(paths);
+        goals.map(|(goal, path)| path.as_ref().map_or(Ok(None), |path| fly(goal, path))).collect()
     }
 
     /// The record of a goal.

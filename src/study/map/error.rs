@@ -57,12 +57,6 @@ pub enum MapStudyError {
         /// Their nearest post.
         post: MapPoint,
     },
-    /// Trials under a policy that needs the nodes of a transect.
-    #[error(
-        "uncertainty.policy is \"replan\", expected \"open-loop\" for trials over a map: replanning needs the nodes of a transect search; \
-         set uncertainty.policy = \"open-loop\""
-    )]
-    Replanning,
     /// More memory than allowed.
     #[error(
         "the map needs up to {} MiB ({posts} posts of the DEM, {nodes} posts of the map), expected at most {} MiB: take a greater stride, \

@@ -6,7 +6,12 @@ use crate::{
     reach::map::{HopMap, Mobility, PostHops, PostHopsSize},
     report::{SizeAnswer, SizeRecord},
     terrain::Samples,
+    uncertainty::Policy,
 };
+
+/// What replanning needs beside the maps and the search: the costs-to-go with their map; or the risks-to-go, with one batch of posts that is
+/// first found in parts.
+const REPLANNING_BYTES_PER_NODE: usize = 32;
 
 /// Upper bounds on the posts, pairs and bytes of a map.
 ///
@@ -52,6 +57,9 @@ impl MapMemory {
         if question.mobility {
             of_node += 2 * size_of::<f32>();
             working = working.max(Mobility::working_bytes_per_node());
+        }
+        if question.trials && question.scenario.uncertainty.as_ref().is_some_and(|keys| keys.policy == Policy::Replan) {
+            of_node += REPLANNING_BYTES_PER_NODE;
         }
         // Each raster: its samples, and its file, which is no larger than they are by more than its header.
         let effort = if question.effort { 2 * size_of::<f32>() } else { 0 };

@@ -2,13 +2,14 @@
 
 use super::{MapMemory, MapQuestion, MapStudyError, NamedPlace};
 use crate::{
+    graph::ReliabilityUse,
     ground::DemGround,
     quantity::MapPoint,
     reach::map::{NodeLattice, Post},
     scenario::Scenario,
     study::{DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body, with_measured_errors},
     terrain::{Dem, GeoReference, MapProjection, NoProjection, check_map_scale},
-    uncertainty::Policy,
+    uncertainty::Uncertainty,
 };
 
 /// A requested position and the post of the map nearest to it.
@@ -99,18 +100,17 @@ impl PreparedMap {
 }
 
 impl MapQuestion<'_> {
-    /// The scenario whose trials are flown, with its measured errors, and warnings about these; `None` if none are asked for.
+    /// The scenario whose trials are flown, with its measured errors, and warnings about these; `None` if no trials are wanted.
     ///
     /// # Errors
-    /// [`MapStudyError::Replanning`], and what is wrong with the measured errors.
+    /// What is wrong with the measured errors.
     pub fn flown_scenario(&self) -> Result<Option<(Scenario, Vec<String>)>, MapStudyError> {
-        if !self.trials {
-            return Ok(None);
-        }
-        if self.scenario.uncertainty.as_ref().is_some_and(|keys| keys.policy == Policy::Replan) {
-            return Err(MapStudyError::Replanning);
-        }
-        Ok(Some(with_measured_errors(self.scenario.clone(), self.base)?))
+        self.trials.then(|| with_measured_errors(self.scenario.clone(), self.base)).transpose().map_err(Into::into)
+    }
+
+    /// Whether a robot with these errors that replans goes the most reliable way, instead of the one of fewest hops.
+    pub(super) fn weighs_risk(&self, errors: &Uncertainty) -> bool {
+        !errors.is_none() && self.scenario.risk != ReliabilityUse::Ignored
     }
 }
 
