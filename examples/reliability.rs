@@ -117,26 +117,30 @@ fn straight_slice(random: &mut ChaCha8Rng, bounds: &MapBounds) -> [MapPoint; 2] 
 
 /// A machine with errors of many sizes, some of friction and heights among them, that chooses its commands in any way.
 fn any_machine(random: &mut ChaCha8Rng) -> String {
-    let takeoff_m_s = random.random_range(4.0..9.0);
+    let takeoff_m_s: f64 = random.random_range(4.0..9.0);
     let mut pick = |choices: &[&'static str]| choices[random.random_range(0..choices.len())];
     let angle = pick(&["least-speed", "mid-range", "least-time", "most-reliable"]);
     let risk = pick(&["ignored", "fewest-hops", "traded"]);
-    let share = if random.random_range(0..3) == 0 { 1.0 } else { 0.0 };
-    format!(
-        "[hopper]\ntakeoff_speed_max_m_s = {takeoff_m_s}\nlanding_speed_max_m_s = {}\n[surface]\nfriction_coefficient = {}\n\
-         [search]\ntakeoff_angle = \"{angle}\"\nrisk = \"{risk}\"\n[uncertainty]\ntakeoff_speed_sigma_fraction = {}\n\
-         takeoff_angle_sigma_deg = {}\nposition_sigma_m = {}\ndrift_along_sigma_m = {}\nfriction_sigma = {}\nheight_sigma_m = {}\n\
-         height_correlation_m = 2.0\ngoal_tolerance_m = {}\n",
-        takeoff_m_s + random.random_range(0.0..1.0),
-        random.random_range(0.5..1.0),
-        random.random_range(0.0..0.02),
-        random.random_range(0.0..1.0),
-        random.random_range(0.0..0.2),
-        random.random_range(0.0..0.2),
-        share * random.random_range(0.0..0.04),
-        share * random.random_range(0.0..0.04),
-        random.random_range(0.5..3.0),
-    )
+    let landing_m_s = takeoff_m_s + random.random_range(0.0..1.0);
+    let friction = random.random_range(0.5..1.0);
+    let mut toml = format!(
+        "[hopper]\ntakeoff_speed_max_m_s = {takeoff_m_s}\nlanding_speed_max_m_s = {landing_m_s}\n[surface]\nfriction_coefficient = {friction}\n\
+         [search]\ntakeoff_angle = \"{angle}\"\nrisk = \"{risk}\"\n[uncertainty]\n"
+    );
+    let mut sigma = |key: &str, from: f64, to: f64| toml.push_str(&format!("{key} = {}\n", random.random_range(from..to)));
+    sigma("takeoff_speed_sigma_fraction", 0.0, 0.02);
+    sigma("takeoff_angle_sigma_deg", 0.0, 1.0);
+    sigma("position_sigma_m", 0.0, 0.2);
+    sigma("drift_along_sigma_m", 0.0, 0.2);
+    sigma("goal_tolerance_m", 0.5, 3.0);
+    // A third of the grounds are not as mapped.
+    if random.random_range(0..3) == 0 {
+        let mut sigma = |key: &str, from: f64, to: f64| toml.push_str(&format!("{key} = {}\n", random.random_range(from..to)));
+        sigma("friction_sigma", 0.0, 0.04);
+        sigma("height_sigma_m", 0.001, 0.04);
+        sigma("height_correlation_m", 1.0, 3.0);
+    }
+    toml
 }
 
 /// 2 % of speed, 1 degree, 3 m of tolerance, 5 to 8 m/s: the machine of the goal.
