@@ -14,6 +14,7 @@ use crate::{
     report::{CheckAnswer, SigmaMarginsRecord, SuccessEstimate},
     scenario::Scenario,
     uncertainty::{HopScatter, Uncertainty},
+    world::FrictionCone,
 };
 
 /// Bounds on the fewest hops are proved, for every choice of points.
@@ -123,7 +124,7 @@ impl Searched {
         };
         let success = SuccessEstimate { success_estimated, success_policy: keys.policy };
         let scatters = journey.simulation(path, None).map_err(Box::new)?.hop_scatters();
-        let friction = scenario.surface.constant_friction().map(|cone| cone.coefficient());
+        let friction = scenario.surface.constant_friction().map(FrictionCone::coefficient);
         // The half-angle of the cone is atan(mu).
         let friction_rad = friction.map_or(0.0, |mu| keys.errors.friction_sigma / (1.0 + mu * mu));
         let of_hop =
