@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::text::Sheet;
 use crate::{hop::HopMargins, uncertainty::HopScatter};
 
 /// Margins of a hop divided by the standard deviation of the quantity that is limited, under the errors of the scenario. The limit is that of
@@ -72,14 +73,14 @@ pub(super) fn edge_text<'a>(hops: impl Iterator<Item = (usize, Option<&'a SigmaM
     let least = hops.filter_map(|(hop, margins)| Some((hop, margins?.least()?)));
     let mut edges: Vec<_> = least.filter(|(_, (sigmas, ..))| *sigmas < 1.0).collect();
     edges.sort_by(|a, b| a.1.0.total_cmp(&b.1.0).then(a.0.cmp(&b.0)));
-    let mut text = String::new();
+    let mut sheet = Sheet::default();
     for (hop, (sigmas, does, limit)) in edges.iter().take(MOST) {
-        text.push_str(&format!("hop {hop} {does} {sigmas:.1} sigma from {limit}\n"));
+        sheet.line(format_args!("hop {hop} {does} {sigmas:.1} sigma from {limit}"));
     }
     if edges.len() > MOST {
         let more = edges.len() - MOST;
         let hops = if more == 1 { "hop is" } else { "hops are" };
-        text.push_str(&format!("{more} more {hops} less than 1 sigma from a limit\n"));
+        sheet.line(format_args!("{more} more {hops} less than 1 sigma from a limit"));
     }
-    text
+    sheet.into_text()
 }

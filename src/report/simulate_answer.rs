@@ -58,16 +58,16 @@ impl SimulateAnswer {
     /// What failed most often, and what would help, as lines.
     fn advice_text(&self) -> String {
         let Some(simulation) = self.simulation.as_ref().filter(|_| !self.advice.is_empty()) else { return String::new() };
-        let mut text = String::new();
+        let mut sheet = Sheet::default();
         let failed = simulation.trials - simulation.outcomes.reached;
         if let Some(most) = simulation.failures.first() {
             let FailureRecord { outcome, hop, count } = most;
-            text.push_str(&format!("\nmost frequent failure: {outcome} at hop {hop}, {count} of {failed} trials that fail\n"));
+            sheet.line(format_args!("\nmost frequent failure: {outcome} at hop {hop}, {count} of {failed} trials that fail"));
         }
         for advice in &self.advice {
-            text.push_str(&format!("advice: {}\n", advice.sentence()));
+            sheet.line(format_args!("advice: {}", advice.sentence()));
         }
-        text
+        sheet.into_text()
     }
 
     /// Whether the success that was asked for is shown, as a sentence.

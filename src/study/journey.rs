@@ -14,6 +14,7 @@ use crate::{
     report::{CheckAnswer, DeratingRecord, SigmaMarginsRecord, SuccessBudgetRecord, SuccessEstimate},
     scenario::Scenario,
     uncertainty::HopScatter,
+    world::FrictionCone,
 };
 
 /// Bounds on the fewest hops are proved, for every choice of points.
@@ -131,7 +132,7 @@ impl Searched {
         let success = SuccessEstimate { success_estimated, success_policy: keys.policy };
         let simulation = journey.simulation(path, None).map_err(Box::new)?;
         let scatters = simulation.hop_scatters();
-        let friction = scenario.surface.constant_friction().map(|cone| cone.coefficient());
+        let friction = scenario.surface.constant_friction().map(FrictionCone::coefficient);
         // The half-angle of the cone is atan(mu).
         let friction_rad = friction.map_or(0.0, |mu| keys.errors.friction_sigma / (1.0 + mu * mu));
         let of_hop =

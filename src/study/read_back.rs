@@ -166,22 +166,18 @@ fn path_of(test: &HopTest, rows: &[HopRecord]) -> Result<HopPath, ReadBackError>
 
 fn hop_of(test: &HopTest, row: &HopRecord, beside: bool) -> Result<Hop, ReadBackError> {
     let chain = test.chain();
-    let point = |along_m: f64, z_m: f64, at: Option<MapPoint>| match at.filter(|_| beside) {
-        Some(at) => Ok(ContactPoint::on_map(along_m, at, z_m)),
-        None => {
-            let station = chain.geometry().station(along_m);
-            station
-                .map(|station| chain.contact_point(&station))
-                .map_err(|problem| ReadBackError::OffChain { hop: row.hop, problem })
-        }
+    let off_chain = |problem| ReadBackError::OffChain { hop: row.hop, problem };
+    let on_chain =
+        |along_m: f64| Ok::<_, ReadBackError>(chain.contact_point(&chain.geometry().station(along_m).map_err(off_chain)?));
+    let point = |along_m: f64, z_m: f64, at: Option<MapPoint>| {
+        at.filter(|_| beside).map_or_else(|| on_chain(along_m), |at| Ok(ContactPoint::on_map(along_m, at, z_m)))
     };
     let map = row.map.as_ref();
     let takeoff_at = map.map(|map| MapPoint::new(map.takeoff_map_x_m, map.takeoff_map_y_m));
     let landing_at = map.map(|map| MapPoint::new(map.landing_map_x_m, map.landing_map_y_m));
     let aim = row.aim.map(|aim| {
-        let station = chain.geometry().station(aim.aim_x_m).map_err(|problem| ReadBackError::OffChain { hop: row.hop, problem });
         let across_m = aim.beside.map(|beside| beside.landing_miss_across_m);
-        Ok::<_, ReadBackError>(Aim { point: chain.contact_point(&station?), miss_m: aim.landing_miss_m, across_m })
+        Ok::<_, ReadBackError>(Aim { point: on_chain(aim.aim_x_m)?, miss_m: aim.landing_miss_m, across_m })
     });
     Ok(Hop {
         direction: row.direction,

@@ -939,11 +939,11 @@ fn desk() -> Desk {
     desk.write("forward.csv", FORWARD_ONLY);
     desk.write("errors.toml", desk.read("scenario.toml") + ERRORS);
     // A path that the scenario in it would not be planned with.
-    let planned = desk.json(&["plan", "errors.toml", "--set", "search.points_per_segment=0", "--set", "search.risk=ignored"]);
-    let risk = "\"risk\":\"ignored\"";
+    let planned = desk.json(&["plan", "errors.toml", "--set", "search.points_per_segment=3", "--set", "search.risk=ignored"]);
+    let (points, none) = ("\"points_per_segment\":3", "\"points_per_segment\":0");
     let result = planned.to_string();
-    assert!(result.contains(risk), "{result}");
-    desk.write("other_path.json", result.replace(risk, "\"risk\":\"traded\""));
+    assert!(result.contains(points), "{result}");
+    desk.write("other_path.json", result.replace(points, none));
     // Walls too steep to rest on around a pit: the least capability to cross it is found by splitting cells.
     desk.write("pit.csv", "x_m,z_m\n0,0\n10,0\n11,-3\n20,-3\n21,0\n40,0\n");
 

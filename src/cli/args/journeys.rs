@@ -161,7 +161,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "W", allow_negative_numbers = true)]
     pub(crate) until_half_width: Option<f64>,
     /// Number of the first trial: ranges of trials can be flown apart, and their tallies merge to that of all
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = trial_number, conflicts_with = "experiment", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = trial_number, conflicts_with = "experiment", allow_negative_numbers = true)]
     pub(crate) first_trial: u64,
     /// Success to be shown: exit status 1 where the lower end of the 95 % interval is below it [default: none]
     #[arg(long, value_name = "P", value_parser = success_share, conflicts_with = "experiment", allow_negative_numbers = true)]

@@ -32,7 +32,7 @@ pub(super) fn advice(planned: &Planned, summary: &Summary) -> Vec<AdviceRecord> 
         TrialOutcome::SlidAtTakeoff | TrialOutcome::SlidAtLanding => {
             [advisor.takeoff_angle(), advisor.risk(), advisor.policy(), advisor.friction()].into()
         }
-        TrialOutcome::Damaged => [advisor.takeoff_angle(), advisor.risk(), advisor.policy(), advisor.landing_speed()].into(),
+        TrialOutcome::Damaged => [advisor.takeoff_angle(), advisor.risk(), advisor.policy(), Some(advisor.landing_speed())].into(),
         TrialOutcome::Lost => [advisor.takeoff_angle(), advisor.risk(), advisor.policy(), advisor.error()].into(),
         TrialOutcome::Stuck => [advisor.takeoff_angle(), advisor.risk(), advisor.error()].into(),
         TrialOutcome::HopLimit => vec![advisor.hop_limit()],
@@ -121,10 +121,10 @@ impl Advisor<'_> {
         Some(record("surface.friction_coefficient", format_number(friction.coefficient()), None, reason))
     }
 
-    fn landing_speed(&self) -> Option<AdviceRecord> {
+    fn landing_speed(&self) -> AdviceRecord {
         let max_m_s = self.planned.case.scenario.hopper.limits().landing_speed_max_m_s;
         let reason = "a machine that withstands faster landings; the path may then take faster ones";
-        Some(record("hopper.landing_speed_max_m_s", format_number(max_m_s), None, reason))
+        record("hopper.landing_speed_max_m_s", format_number(max_m_s), None, reason)
     }
 
     fn hop_limit(&self) -> Option<AdviceRecord> {
