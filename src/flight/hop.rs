@@ -63,7 +63,9 @@ impl Errors {
         }
         LiftoffVelocity { heading, horizontal_m_s: horizontal, vertical_m_s: up }
     }
+}
 
+impl HopErrors {
     /// Follows an arc to its first contact, checks the landing, and adds the random displacement (`drift_*`) that stands for bounce
     /// and roll.
     pub(crate) fn fly<G: FirstContact>(
@@ -72,7 +74,6 @@ impl Errors {
         from: &G::Contact,
         liftoff: &LiftoffVelocity,
         aim: &G::Contact,
-        errors: &HopErrors,
     ) -> FlownHop<G::Contact> {
         // An error can lift the speed to that of escape: the hopper does not come back.
         let speed_m_s = libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s);
@@ -89,7 +90,7 @@ impl Errors {
             None => Err(ContactFailure::OffLimits),
             Some(support_facet) => ground.check_landing(&flight.end, support_facet, &touchdown),
         };
-        let rest = held.and_then(|()| ground.displaced(&flight.end, liftoff.heading, errors.drift_m[0], errors.drift_m[1]));
+        let rest = held.and_then(|()| ground.displaced(&flight.end, liftoff.heading, self.drift_m[0], self.drift_m[1]));
         FlownHop {
             end: flight.end,
             rest: rest.unwrap_or(flight.end),

@@ -97,7 +97,7 @@ pub(super) struct Judge {
 #[derive(Clone, Debug)]
 enum Trials {
     Slack,
-    Chain(HopTrials<ChainGround>),
+    Chain(Box<HopTrials<ChainGround>>),
     Map(Box<(HopTrials<DemGround>, DemGround)>),
 }
 
@@ -127,7 +127,12 @@ impl Judge {
                         // Along a chain there is one plane of travel.
                         let errors = errors.in_one_plane();
                         let ground = ChainGround::new(test.clone());
-                        Trials::Chain(HopTrials::new(&ground, &errors, of_takeoffs, test.chain().geometry().vertices().len()))
+                        Trials::Chain(Box::new(HopTrials::new(
+                            &ground,
+                            &errors,
+                            of_takeoffs,
+                            test.chain().geometry().vertices().len(),
+                        )))
                     }
                     Some(ground) => {
                         Trials::Map(Box::new((HopTrials::new(ground.as_ref(), errors, of_takeoffs, 1), (**ground).clone())))

@@ -66,7 +66,7 @@ fn deviation(values: &[f64]) -> f64 {
 fn a_bias_displaces_landings_in_proportion_to_the_distance_and_own_errors_to_its_root() {
     let scene = plain();
     let planned = scene.planned();
-    let runs: Vec<f64> = planned.path.hops.iter().map(|hop| hop.run_m()).collect();
+    let runs: Vec<f64> = planned.path.hops.iter().map(chta::path::Hop::run_m).collect();
     assert!(runs.len() >= 8, "{runs:?}");
     let (trials, sigma) = (400, 0.02);
     let biased = Uncertainty { takeoff_speed_bias_sigma_fraction: sigma, ..Uncertainty::NONE };
@@ -220,8 +220,12 @@ fn rows_are_resampled_whole_equally_and_anew_for_every_hop() {
                 row.unwrap_or_else(|| panic!("no row has {speed} and {angle}"))
             })
             .collect();
-        flown.iter().for_each(|row| counts[*row] += 1);
-        flown.windows(2).for_each(|pair| pairs[pair[0]][pair[1]] += 1);
+        for row in &flown {
+            counts[*row] += 1;
+        }
+        for pair in flown.windows(2) {
+            pairs[pair[0]][pair[1]] += 1;
+        }
     }
     // Five standard errors: of each row a fifth, of each pair of neighbouring hops a 25th.
     let near = |counts: &[u32], share: f64, of: u32| {
