@@ -71,7 +71,9 @@ impl Errors {
         }
         LiftoffVelocity { heading, horizontal_m_s: horizontal, vertical_m_s: up }
     }
+}
 
+impl HopErrors {
     /// Follows an arc to its first contact, checks the landing, follows its bounces if the hopper has a restitution, and adds the random
     /// displacement (`drift_*`) that stands for what rolls on.
     pub(crate) fn fly<G: FirstContact>(
@@ -80,7 +82,6 @@ impl Errors {
         from: &G::Contact,
         liftoff: &LiftoffVelocity,
         aim: &G::Contact,
-        errors: &HopErrors,
     ) -> FlownHop<G::Contact> {
         let flight = arc(ground, from, liftoff, aim);
         let touchdown = TouchdownState::after(liftoff, flight.time_s, ground.gravity_m_s2());
@@ -98,7 +99,7 @@ impl Errors {
         };
         let rest = held
             .and(bounces.failure.map_or(Ok(()), Err))
-            .and_then(|()| ground.displaced(&bounces.end, liftoff.heading, errors.drift_m[0], errors.drift_m[1]));
+            .and_then(|()| ground.displaced(&bounces.end, liftoff.heading, self.drift_m[0], self.drift_m[1]));
         FlownHop {
             end: flight.end,
             rest: rest.unwrap_or(bounces.end),

@@ -21,6 +21,7 @@ pub(crate) struct Errors {
 
 /// What the errors change in a command.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "one for each part of a command, all independent")]
 struct Changes {
     speed: bool,
     direction: bool,

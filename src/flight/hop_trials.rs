@@ -152,7 +152,7 @@ fn rest<G: FirstContact>(
     if !liftoff.stays() && !ground.holds_takeoff(&from, &liftoff) {
         return None;
     }
-    let flown = errors.fly(ground, &from, &liftoff, &hop.command.aim, &drawn);
+    let flown = drawn.fly(ground, &from, &liftoff, &hop.command.aim);
     if flown.failure.is_some() {
         return None;
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Command, Errors, HopErrors, Uncertainty};
+use super::{Command, HopErrors};
 use crate::{
     ballistics::Arc,
     ground::{FirstContact, Windows},
@@ -35,11 +35,10 @@ pub(crate) fn resting_at<G: FirstContact + Windows>(
         return command;
     }
     let (takeoff, wanted) = (ground.point(from).xy(), ground.point(&command.rest).xy());
-    let without_errors = Errors::new(Uncertainty::NONE, false);
     let mut best: Option<(f64, Command<G::Contact>)> = None;
     let mut tried = command;
     for _ in 0..=CORRECTIONS {
-        let flown = without_errors.fly(ground, from, &tried.liftoff, &tried.aim, &HopErrors::default());
+        let flown = HopErrors::default().fly(ground, from, &tried.liftoff, &tried.aim);
         let (contact, rest) = (ground.point(&flown.end).xy(), ground.point(&flown.rest).xy());
         let miss = rest - wanted;
         if flown.failure.is_none() && best.as_ref().is_none_or(|(least_m, _)| miss.norm() < *least_m) {

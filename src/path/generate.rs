@@ -4,7 +4,7 @@ use super::{Hop, HopPath, NoCommand, Propellant, RollOut, Totals, heading_deg, s
 use crate::{
     ballistics::{Arc, TakeoffChoice, delta_v_m_s, propellant_kg},
     chain::Station,
-    flight::{Command, Errors, HopErrors, Uncertainty},
+    flight::{Command, HopErrors},
     graph::{Edge, Leg},
     ground::{ChainGround, ChainPosition, DemGround, Surface, heading_of},
     hop::{HopMargins, HopTest, SegmentHops, Split},
@@ -224,8 +224,7 @@ fn roll_out(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc) -> Op
     let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
     let [from, aim] = [takeoff, landing].map(ChainPosition::on_chain);
     let command = Command::of_arc(arc, heading_of(direction), aim);
-    let errors = Errors::new(Uncertainty::NONE, false);
-    let flown = errors.fly(&ChainGround::new(test.clone()), &from, &command.liftoff, &aim, &HopErrors::default());
+    let flown = HopErrors::default().fly(&ChainGround::new(test.clone()), &from, &command.liftoff, &aim);
     Some(RollOut {
         bounces: flown.bounces.count,
         distance_m: direction.sign() * (flown.rest.station.point.x_m - landing.point.x_m),

@@ -105,7 +105,7 @@ fn fly<G: FirstContact>(
     let forward = liftoff.heading.dot(&command.liftoff.heading).signum();
     let planned_rad = libm::atan2(command.liftoff.vertical_m_s, command.liftoff.horizontal_m_s);
     takeoff.add(libm::atan2(liftoff.vertical_m_s, forward * liftoff.horizontal_m_s) - planned_rad);
-    let flown = errors.fly(ground, &ground.realized(hop.from), &liftoff, &command.aim, drawn);
+    let flown = drawn.fly(ground, &ground.realized(hop.from), &liftoff, &command.aim);
     if flown.landed {
         let touchdown = flown.touchdown;
         landing.add(libm::atan2(touchdown.vertical_m_s, forward * touchdown.horizontal_m_s));

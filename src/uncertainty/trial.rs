@@ -114,7 +114,7 @@ pub(super) fn fly<G: FirstContact + Windows>(
         if !liftoff.stays() && !journey.ground.holds_takeoff(&journey.position, &liftoff) {
             break TrialOutcome::SlidAtTakeoff;
         }
-        let hop = rules.errors.fly(journey.ground, &journey.position, &liftoff, &command.aim, &drawn);
+        let hop = drawn.fly(journey.ground, &journey.position, &liftoff, &command.aim);
         if let Some(tank) = &rules.tank {
             let Some(used_kg) = tank.used_kg(journey.used_kg, journey.delta_v_m_s(&liftoff, &hop)) else {
                 break TrialOutcome::OutOfPropellant;

@@ -1,5 +1,6 @@
 //! `uncertainty.errors`: a file of measured errors beside its scenario.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot set its scene should stop")]
 use std::fmt::Write as _;
 
 use crate::desk::Desk;
@@ -12,7 +13,7 @@ const SCENARIO: &str = "[body]\nname = \"mars\"\n[hopper]\ntakeoff_speed_max_m_s
 fn desk(errors: &str) -> Desk {
     let desk = Desk::new();
     desk.write("flat.csv", "x_m,z_m\n-50,0\n150,0\n");
-    std::fs::create_dir(desk.path().join("sub")).unwrap();
+    std::fs::create_dir(desk.path().join("sub")).expect("a folder");
     desk.write("sub/measured.csv", errors);
     desk.write("sub/measured.toml", format!("{SCENARIO}errors = \"measured.csv\"\n"));
     desk

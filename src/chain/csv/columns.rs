@@ -170,8 +170,8 @@ impl CsvColumn {
             Kind::SpeedError => "a finite speed, m/s",
             Kind::Friction => "a finite number of at least 0",
             Kind::Speed => "a finite speed of at least 0 m/s",
-            Kind::Degrees { least, .. } if least == -180.0 => "a finite angle from -180 to 180 degrees",
-            Kind::Degrees { least, .. } if least < 0.0 => "a finite angle from -270 to 270 degrees",
+            Kind::Degrees { least, .. } if least < -180.0 => "a finite angle from -270 to 270 degrees",
+            Kind::Degrees { least, .. } if least < 0.0 => "a finite angle from -180 to 180 degrees",
             Kind::Degrees { .. } => "a finite angle from 0 to 90 degrees",
             Kind::Flag => "0 or 1",
         }

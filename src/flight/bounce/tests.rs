@@ -52,7 +52,7 @@ fn station(ground: &ChainGround, x_m: f64) -> ChainPosition {
 fn flown<G: FirstContact>(ground: &G, from: &G::Contact, velocity: Vector3<f64>) -> FlownHop<G::Contact> {
     let horizontal_m_s = velocity.xy().norm();
     let liftoff = LiftoffVelocity { heading: velocity.xy() / horizontal_m_s, horizontal_m_s, vertical_m_s: velocity.z };
-    Errors::new(Uncertainty::NONE, false).fly(ground, from, &liftoff, from, &HopErrors::default())
+    HopErrors::default().fly(ground, from, &liftoff, from)
 }
 
 fn random_restitution(draw: &mut Draw, speed_m_s: f64) -> Restitution {
@@ -271,7 +271,7 @@ fn estimates_count_what_flights_do() {
             if !ground.holds_takeoff(&from, &liftoff) {
                 continue;
             }
-            let hop = random.fly(&ground, &from, &liftoff, &aim, &drawn);
+            let hop = drawn.fly(&ground, &from, &liftoff, &aim);
             arrived += u32::from(hop.failure.is_none() && (hop.rest.station.point.x_m - goal_m).abs() <= tolerance_m);
         }
         let counted = f64::from(arrived) / 20_000.0;
@@ -316,7 +316,7 @@ fn commands_aimed_short_rest_where_they_are_meant_to_end() {
         let short = resting_at(&ground, &from, command);
         let miss_m = |command: &Command<MapPosition>| {
             let hop =
-                Errors::new(Uncertainty::NONE, false).fly(&ground, &from, &command.liftoff, &command.aim, &HopErrors::default());
+                HopErrors::default().fly(&ground, &from, &command.liftoff, &command.aim);
             hop.failure.is_none().then_some((hop.rest.at - to.at).norm())
         };
         assert_eq!(short.rest, to);

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot build its chain should stop")]
 
+use std::fmt::Write as _;
+
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 use super::*;
@@ -184,7 +186,7 @@ fn measured(rows: u32) -> Uncertainty {
     for _ in 0..rows {
         let common: f64 = source.random::<f64>() - 0.4;
         let own: f64 = source.random::<f64>() - 0.5;
-        text += &format!("{},{}\n", 5.0 * common + own, 0.07 * common);
+        writeln!(text, "{},{}", 5.0 * common + own, 0.07 * common).unwrap();
     }
     let file = read_measured_csv(text.as_bytes()).unwrap();
     Uncertainty { measured: Some(MeasuredErrors::of(&file)), ..Uncertainty::NONE }
