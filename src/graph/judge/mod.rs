@@ -34,7 +34,7 @@ pub enum RiskModel {
         /// The DEM over which they are flown; `None`: the chain, whose ground ends where it ends.
         over: Option<Box<DemGround>>,
         /// The same chain under the limits that are flown, where planning may use only shares of them.
-        whole: Option<HopTest>,
+        whole: Option<Box<HopTest>>,
     },
     /// The margin of the flown angle to either end of its feasible set, for an angle with one degree of standard deviation.
     Slack,
@@ -99,7 +99,7 @@ pub(super) struct Judge {
 #[derive(Clone, Debug)]
 enum Trials {
     Slack,
-    Chain(HopTrials<ChainGround>),
+    Chain(Box<HopTrials<ChainGround>>),
     Map(Box<(HopTrials<DemGround>, DemGround)>),
 }
 
@@ -123,8 +123,8 @@ impl Judge {
                     None => {
                         // Along a chain there is one plane of travel.
                         let errors = Uncertainty { heading_sigma: Angle::from_radians(0.0), ..*errors };
-                        let ground = ChainGround::new(whole.as_ref().unwrap_or(test).clone());
-                        Trials::Chain(HopTrials::new(&ground, &errors, test.chain().geometry().vertices().len()))
+                        let ground = ChainGround::new(whole.as_deref().unwrap_or(test).clone());
+                        Trials::Chain(Box::new(HopTrials::new(&ground, &errors, test.chain().geometry().vertices().len())))
                     }
                     Some(ground) => Trials::Map(Box::new((HopTrials::new(ground.as_ref(), errors, 1), (**ground).clone()))),
                 };
