@@ -61,7 +61,7 @@ impl ReliabilityOptions {
     #[must_use]
     pub fn flown_under(mut self, limits_of: Option<&HopTest>) -> Self {
         if let RiskModel::Flown { whole, .. } = &mut self.model {
-            *whole = limits_of.cloned();
+            *whole = limits_of.cloned().map(Box::new);
         }
         self
     }

@@ -53,7 +53,7 @@ pub struct CheckAnswer {
     /// Of a scenario with a budget of success: whether the path has it; if not, the verdict is `no-path-found`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub success_budget: Option<SuccessBudgetRecord>,
-    /// The shares of the limits that this answer, and a proof, is for; absent if it is for the whole limits.
+    /// The shares of the limits that this answer, a proof and all margins are for; absent if they are for the whole limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derating: Option<DeratingRecord>,
     /// If no commands in the machine's steps fly the path; the verdict is then `no-path-found`.

@@ -27,7 +27,7 @@ impl DeratingRecord {
     pub fn sentence(&self) -> String {
         let Self { takeoff_speed, landing_speed, friction } = *self;
         format!(
-            "planned with derated limits ([derating]: {}), flown and checked under the whole limits",
+            "planned with derated limits ([derating]: {}), to which margins are stated; trials fly the whole limits",
             Derating { takeoff_speed, landing_speed, friction }.shares()
         )
     }

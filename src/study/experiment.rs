@@ -137,13 +137,14 @@ pub fn experiment(
 
 /// Plans and flies with successively narrower cones, on the same draws.
 fn cone_widths(planned: &Planned, widest: &[Hop], seed: u64, progress: &dyn Progress) -> Result<ConeWidthAnswer, ExperimentError> {
-    let scenario = &planned.case.scenario;
+    let derated = planned.case.scenario.derated();
+    let scenario = derated.as_ref().unwrap_or(&planned.case.scenario);
     let numbers = DriftExperiment::of_the_paper(DriftReading::default(), seed);
     let reference_m_s = widest.first().map_or(1.0, Hop::horizontal_speed_m_s);
     let mut answer = ConeWidthAnswer::new(&numbers, reference_m_s);
     for share in CONE_SHARES {
         let failed = |problem: ConeProblem| ExperimentError::Cones { share, problem };
-        let geometry = narrowed(&planned.case.prepared.chain, share).map_err(|problem| failed(problem.into()))?;
+        let geometry = narrowed(&planned.case.planning().chain, share).map_err(|problem| failed(problem.into()))?;
         let chain = ConstrainedChain::new(geometry, &scenario.hopper, scenario.body.gravity, &scenario.surface)
             .map_err(|problem| failed(problem.into()))?;
         let width_deg = mean_takeoff_width_deg(&chain);

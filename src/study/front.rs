@@ -52,14 +52,16 @@ pub(super) fn front(
     searched: &Searched,
     progress: &dyn Progress,
 ) -> Result<Vec<FrontRecord>, JourneyError> {
-    let (scenario, found) = (&case.scenario, &searched.found);
+    // A front trades hops for reliability, however the plan weighs it; so does a robot that replans along its paths.
+    let scenario = &Scenario { risk: ReliabilityUse::Traded, ..case.scenario.clone() };
+    let found = &searched.found;
     let Some(keys) = scenario.uncertainty.as_ref().filter(|_| matches!(found.outcome, Outcome::Path { .. })) else {
         return Ok(Vec::new());
     };
     let ground = dem_ground(case).map_err(Box::new)?;
     let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
     let mut paths = searched.reliable_paths.clone();
-    if scenario.risk != ReliabilityUse::Traded {
+    if case.scenario.risk != ReliabilityUse::Traded {
         let nodes = NodeSet::new(test.chain(), ends.0, ends.1, found.spacing).map_err(graph::SearchError::from)?;
         let reliability = scenario.reliability_with(scenario.risk_extra_hops_max, ground.as_ref());
         let reliability = reliability.flown_under(journey.whole.as_ref());

@@ -128,11 +128,12 @@ mod tests {
     #[test]
     fn thresholds_are_found_between_scanned_values_and_islands_are_said() {
         type Success = fn(f64) -> f64;
+        type Case = ((f64, f64), Success, Option<f64>, bool);
         let rising: Success = |value| (value / 10.0).min(1.0);
         let falling: Success = |value| 1.0 - value / 20.0;
         let island: Success = |value| if (4.0..6.0).contains(&value) { 0.95 } else { value / 10.0 };
         // The ends of the range from weak to strong, the success, the value wanted, and whether all stronger values have it.
-        let cases: [((f64, f64), Success, Option<f64>, bool); 5] = [
+        let cases: [Case; 5] = [
             ((0.0, 10.0), rising, Some(9.0), true),
             ((20.0, 0.0), falling, Some(2.0), true),
             ((0.0, 10.0), island, Some(4.0), false),

@@ -288,6 +288,12 @@ impl Scenario {
                  chain, or leave the key out"
             ));
         }
+        if self.derating.friction != 1.0 && grounds.iter().all(|ground| matches!(ground.form, GroundForm::Explicit { .. })) {
+            warnings.push(
+                "derating.friction has no effect: every segment of the chain states its own angles, which no friction decides"
+                    .to_owned(),
+            );
+        }
         if self.accept_map_scale && !matches!(self.terrain, Some(TerrainSource::Dem { .. }) | None) {
             warnings.push("terrain.accept_map_scale has no effect: only a dem has a map whose scale can be off".to_owned());
         }

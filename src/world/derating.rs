@@ -94,6 +94,8 @@ impl Derating {
 mod tests {
     use super::{super::HopperLimits, *};
 
+    type Case<'a> = (&'a [f64], f64, f64, Option<&'a [f64]>);
+
     #[test]
     fn shares_of_levels_leave_the_lower_ones_or_are_refused() {
         let with = |levels: &[f64], max_m_s: f64| {
@@ -101,7 +103,7 @@ mod tests {
             Hopper::new(HopperLimits { takeoff_speed_levels: levels, ..HopperLimits::with_speeds(max_m_s, 8.0) }).expect("a hopper")
         };
         // The levels and the greatest speed, the share, and the levels left.
-        let cases: [(&[f64], f64, f64, Option<&[f64]>); 5] = [
+        let cases: [Case<'_>; 5] = [
             (&[1.0, 2.0, 4.0], f64::INFINITY, 0.5, Some(&[1.0, 2.0])),
             (&[1.0, 2.0, 4.0], 5.0, 0.5, Some(&[1.0, 2.0])),
             (&[1.0, 2.0, 4.0], 5.0, 0.49, Some(&[1.0])),

@@ -1090,6 +1090,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
             let writes = [
                 "--geojson",
                 "--plot",
+                "--plot-front",
                 "--plot-map",
                 "--pairs",
                 "--starts",

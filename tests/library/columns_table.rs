@@ -185,7 +185,11 @@ fn value_of(schema: &Value, records: &Records) -> Value {
         "boolean" => json!(true),
         "string" if schema["pattern"].is_string() => json!("terrain/terrain"),
         "string" => json!("text"),
-        "array" => json!([]),
+        "array" => {
+            let least = schema["minItems"].as_u64().unwrap_or(0);
+            let item = || if schema["items"].is_object() { value_of(&schema["items"], records) } else { json!(1.0) };
+            (0..least).map(|_| item()).collect::<Vec<_>>().into()
+        }
         _ => keys_of(schema).into_iter().map(|(name, key, _)| (name, value_of(&key, records))).collect::<Map<_, _>>().into(),
     }
 }
@@ -226,7 +230,12 @@ fn tables(records: &Records) -> Vec<(&'static str, &'static str, Vec<String>, Ve
         ("A path in time (`--trajectory`)", "trajectory", trajectory, vec![]),
         ("Landings of trials (`simulate --output`), CSV and Parquet", "landings", landings, vec![]),
         ("`fan --output`", "fan", header(|out| fan.write_csv(out)), vec!["FanRecord"]),
-        ("`trade --output`", "trade", header(|out| trade.write_csv(out)), vec!["TradeRow", "TotalsRecord", "MarginsRecord"]),
+        (
+            "`trade --output`",
+            "trade",
+            header(|out| trade.write_csv(out)),
+            vec!["TradeRow", "TotalsRecord", "MarginsRecord", "SuccessBudgetRecord"],
+        ),
         (
             "`compare --output`",
             "compare",

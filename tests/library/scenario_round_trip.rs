@@ -84,18 +84,18 @@ fn toml() -> impl Strategy<Value = String> {
             ("surface", "friction_raster") => friction && ground != 2,
             ("terrain", "chain") => ground == 2,
             ("terrain", _) => ground > 0,
-            ("surface", "friction_coefficient") => friction,
+            ("surface", "friction_coefficient") | ("derating", "friction") => friction,
             ("surface", "takeoff_from_slope_deg" | "landing_from_slope_deg") => !friction,
             // Both or neither; a heading error only on a raster.
             ("uncertainty", "height_sigma_m" | "height_correlation_m") => degrees,
             ("uncertainty", "heading_sigma_deg" | "heading_bias_sigma_deg") => ground < 2,
             // A budget of success without errors, and shares that leave too little for other keys, are refused.
             ("budget", _) => degrees && !points,
-            ("derating", "takeoff_speed") => points,
             ("derating", "landing_speed") => points && degrees,
-            ("derating", "friction") => friction,
             ("search", "risk_extra_hops_max") => false,
-            ("search", "points_per_segment") | ("hopper", "roughness_max_m" | "takeoff_speed_max_m_s") => points,
+            ("search", "points_per_segment")
+            | ("derating", "takeoff_speed")
+            | ("hopper", "roughness_max_m" | "takeoff_speed_max_m_s") => points,
             ("search", "node_spacing_max_m") => !points,
             _ => true,
         };

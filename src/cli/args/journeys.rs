@@ -117,7 +117,7 @@ pub(crate) struct PlanArgs {
     #[arg(long)]
     pub(crate) verify: bool,
     /// Front of two amounts over the same nodes: hops,risk, the most reliable path for every number of hops, with its success
-    /// estimated by 512 fixed trials under the scenario's policy; needs [uncertainty]
+    /// estimated by 512 fixed trials under the scenario's policy; needs [uncertainty] [default: none]
     #[arg(long, value_name = "AMOUNTS")]
     pub(crate) front: Option<String>,
     /// Picture of the front (SVG or PNG) to write

@@ -38,7 +38,7 @@ pub enum RiskModel {
         /// The DEM over which they are flown; `None`: the chain, whose ground ends where it ends.
         over: Option<Box<DemGround>>,
         /// The same chain under the limits that are flown, where planning may use only shares of them.
-        whole: Option<HopTest>,
+        whole: Option<Box<HopTest>>,
     },
     /// The margin of the flown angle to either end of its feasible set, for an angle with one degree of standard deviation.
     Slack,
@@ -132,7 +132,7 @@ impl Judge {
                     None => {
                         // Along a chain there is one plane of travel.
                         let errors = errors.in_one_plane();
-                        let ground = ChainGround::new(whole.as_ref().unwrap_or(test).clone());
+                        let ground = ChainGround::new(whole.as_deref().unwrap_or(test).clone());
                         let vertices = test.chain().geometry().vertices().len();
                         Trials::Chain(Box::new(HopTrials::new(&ground, &errors, of_takeoffs, vertices, SEARCHED_DRAWS)))
                     }
