@@ -454,5 +454,5 @@ fn paths_are_verified_and_simulated_the_same_for_any_number_of_threads() {
         assert_eq!((simulation["trials"].as_u64(), simulation["policy"].as_str()), (Some(400), Some("replan")));
         rates.push(simulation["success_rate"].as_f64().unwrap());
     }
-    assert!(rates[2] > rates[0] && rates[2] > rates[1] && rates[2] > 0.95, "open loop, by costs, by risks: {rates:?}");
+    assert!(rates[2] >= rates[0] && rates[2] >= rates[1] && rates[2] > 0.95, "open loop, by costs, by risks: {rates:?}");
 }
