@@ -315,8 +315,7 @@ fn commands_aimed_short_rest_where_they_are_meant_to_end() {
         let command = Command::of_arc(&steep, Vector2::new(away.cos(), away.sin()), to);
         let short = resting_at(&ground, &from, command);
         let miss_m = |command: &Command<MapPosition>| {
-            let hop =
-                HopErrors::default().fly(&ground, &from, &command.liftoff, &command.aim);
+            let hop = HopErrors::default().fly(&ground, &from, &command.liftoff, &command.aim);
             hop.failure.is_none().then_some((hop.rest.at - to.at).norm())
         };
         assert_eq!(short.rest, to);
