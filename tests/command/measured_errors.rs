@@ -1,6 +1,7 @@
 //! `uncertainty.errors`: a file of measured errors beside its scenario.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene should stop")]
+
 use std::fmt::Write as _;
 
 use crate::desk::Desk;
