@@ -205,6 +205,9 @@ fn contradictions_of_success_and_derating_are_refused() {
     }
 }
 
+/// A scenario with its limits, one of smaller limits with those, and more words for both.
+type DeratedCase<'a> = (&'a str, &'a [&'a str], &'a str, &'a [&'a str], &'a [&'a str]);
+
 /// Planning under shares of the limits is planning under limits that much smaller, hop by hop, and the plan passes the checker. The products
 /// are exact, so the bytes are equal.
 #[test]
@@ -222,7 +225,7 @@ fn a_derated_plan_is_that_of_smaller_limits() {
     let of_scenario: &[&str] =
         &["hopper.takeoff_speed_max_m_s=6", "hopper.landing_speed_max_m_s=7", "surface.friction_coefficient=0.4"];
     let whole: &[&str] = &["hopper.takeoff_speed_max_m_s=8", "hopper.landing_speed_max_m_s=8", "surface.friction_coefficient=0.8"];
-    let cases: [(&str, &[&str], &str, &[&str], &[&str]); 4] = [
+    let cases: [DeratedCase<'_>; 4] = [
         ("scenario.toml", whole, "scenario.toml", of_scenario, &["--prove", "--prove-cells-max", "300"]),
         ("map.toml", whole, "map.toml", of_scenario, &[]),
         ("explicit.toml", &[], "smaller.toml", &[], &[]),
