@@ -41,23 +41,6 @@ pub(crate) enum Purpose {
     },
 }
 
-/// Keys of `[uncertainty]` that the estimate of a hop's risk uses.
-const OF_RISK: [&str; 13] = [
-    "takeoff_speed_sigma_m_s",
-    "takeoff_speed_sigma_fraction",
-    "takeoff_angle_sigma_deg",
-    "position_sigma_m",
-    "drift_along_sigma_m",
-    "friction_sigma",
-    "height_sigma_m",
-    "takeoff_speed_bias_sigma_fraction",
-    "takeoff_angle_bias_sigma_deg",
-    "heading_bias_sigma_deg",
-    "distribution",
-    "errors",
-    "goal_tolerance_m",
-];
-
 /// What a scenario weighs in the choice of a path.
 #[derive(Clone, Copy, Debug, Default)]
 struct Weighs {
@@ -151,8 +134,9 @@ impl Purpose {
             ("search", "risk" | "risk_extra_hops_max") => by_risk,
             ("budget", _) => by_risk || matches!(self, Self::Require | Self::Trade),
             ("derating", _) => !matches!(self, Self::Map { .. }),
-            ("uncertainty", name) if by_success => !matches!(name, "trials" | "seed"),
-            ("uncertainty", name) => flies || (by_risk && weighs_risk && OF_RISK.contains(&name)),
+            // The trials of an estimate have a number and a seed of their own.
+            ("uncertainty", "trials" | "seed") => flies,
+            ("uncertainty", _) => flies || by_success || matches!(self, Self::Plan) || (by_risk && weighs_risk),
             _ => true,
         }
     }

@@ -167,7 +167,7 @@ impl CostToGo {
     fn chosen_loft(&self, from: &Station, landing: &Station, edge: Edge) -> Option<f64> {
         let Edge::Hop(lofts) = edge else { return None };
         let judge = self.judge()?;
-        judge.single(from, landing, lofts, judge.takeoff_m2([0.0; 2]), false).loft
+        judge.single((from, landing), lofts, judge.takeoff_m2([0.0; 2]), false, f64::INFINITY).loft
     }
 
     /// The judge of commands, where the options choose the most reliable one.

@@ -296,7 +296,7 @@ impl Lattice {
     fn labelled(&self, graph: &HopGraph, judge: &Judge, counter: &mut PairCounter<'_>) -> Result<Labels, Cancelled> {
         let nodes = graph.nodes();
         let (start, goal) = (nodes.start().index(), nodes.goal().index());
-        let mut known: BTreeMap<(usize, usize), Judged> = BTreeMap::new();
+        let mut known: BTreeMap<(usize, usize), Known> = BTreeMap::new();
         let mut least = vec![f64::INFINITY; self.steps.len()];
         let first = Label { weight: 0.0, from: None, loft: None, takeoff_m2: [0.0; 2] };
         let mut labels: Labels = BTreeMap::from([(0, BTreeMap::from([(start, first)]))]);
@@ -311,35 +311,33 @@ impl Lattice {
             for (node, label) in &layer {
                 least[*node] = label.weight;
             }
-            let of_use = |label: &Label, step: &Step| {
-                let reached = hops + step.hops;
-                let target = labels.get(&reached).and_then(|layer| layer.get(&step.target));
-                reached.saturating_add(self.to_goal[step.target]) <= self.budget
-                    && label.weight < least[step.target]
-                    && target.is_none_or(|target| label.weight < target.weight)
-            };
+            let mut into: BTreeMap<(u64, usize), Vec<(usize, Label)>> = BTreeMap::new();
+            for (node, label) in layer {
+                for step in &self.steps[node] {
+                    let reached = hops + step.hops;
+                    if reached.saturating_add(self.to_goal[step.target]) <= self.budget {
+                        into.entry((reached, step.target)).or_default().push((node, label));
+                    }
+                }
+            }
             // Where the take-off does not depend on the hops before, an edge is judged once; the first hop takes off without scatter.
             let is_kept = hops > 0 && !judge.depends_on_hops_before();
-            let judged = |(node, label): &(usize, Label)| -> Vec<(Step, Judged)> {
-                let edge = |step: &Step| {
-                    let before = known.get(&(*node, step.target)).filter(|_| is_kept).copied();
-                    before.unwrap_or_else(|| judge.edge(graph, (*node, step.target), label.takeoff_m2))
-                };
-                self.steps[*node].iter().filter(|step| of_use(label, step)).map(|step| (*step, edge(step))).collect()
+            let into: Vec<_> = into.into_iter().collect();
+            let best_of = |((reached, target), sources): &((u64, usize), Vec<(usize, Label)>)| {
+                let known_label = labels.get(reached).and_then(|layer| layer.get(target));
+                let most = least[*target].min(least[goal]).min(known_label.map_or(f64::INFINITY, |label| label.weight));
+                best_into((judge, graph), *target, (hops, sources), most, is_kept.then_some(&known))
             };
-            let all: Vec<Vec<(Step, Judged)>> = layer.par_iter().map(judged).collect();
-            for ((node, label), edges) in layer.iter().zip(all) {
-                for (step, edge) in edges {
+            let all: Vec<Best> = into.par_iter().map(best_of).collect();
+            for (((reached, target), _), best) in into.iter().zip(all) {
+                for (source, edge) in best.judged {
                     counter.pair()?;
                     if is_kept {
-                        known.entry((*node, step.target)).or_insert(edge);
+                        known.insert((source, *target), edge);
                     }
-                    let weight = label.weight + edge.weight;
-                    let layer = labels.entry(hops + step.hops).or_default();
-                    if layer.get(&step.target).is_none_or(|known| weight < known.weight) {
-                        let takeoff_m2 = judge.takeoff_m2(edge.spread_m2);
-                        layer.insert(step.target, Label { weight, from: Some((hops, *node)), loft: edge.loft, takeoff_m2 });
-                    }
+                }
+                if let Some(label) = best.label {
+                    labels.entry(*reached).or_default().insert(*target, label);
                 }
             }
             match labels.range(hops + 1..).next() {
@@ -348,6 +346,58 @@ impl Lattice {
             }
         }
     }
+}
+
+/// What is known of an edge that is judged once.
+#[derive(Clone, Copy)]
+enum Known {
+    /// Its risk.
+    Exact(Judged),
+    /// That it weighs no less.
+    AtLeast(f64),
+}
+
+/// The best label of a node in a layer, and the edges that were judged for it, by their sources.
+struct Best {
+    label: Option<Label>,
+    judged: Vec<(usize, Known)>,
+}
+
+/// The best label of a node over edges from labels with this number of hops, if it weighs less than `most`. The lightest sources come first,
+/// and draws end where an edge cannot win any more.
+fn best_into(
+    (judge, graph): (&Judge, &HopGraph),
+    target: usize,
+    (hops, sources): (u64, &[(usize, Label)]),
+    mut most: f64,
+    known: Option<&BTreeMap<(usize, usize), Known>>,
+) -> Best {
+    let mut sources: Vec<&(usize, Label)> = sources.iter().collect();
+    sources.sort_by(|a, b| a.1.weight.total_cmp(&b.1.weight).then(a.0.cmp(&b.0)));
+    let mut best = Best { label: None, judged: Vec::new() };
+    let least_of_edge = judge.least_weight();
+    for (source, label) in sources {
+        let below = most - label.weight;
+        if below <= least_of_edge {
+            break;
+        }
+        let edge = match known.and_then(|known| known.get(&(*source, target))) {
+            Some(Known::Exact(edge)) => *edge,
+            Some(Known::AtLeast(weight)) if *weight >= below => continue,
+            _ => {
+                let edge = judge.edge(graph, (*source, target), label.takeoff_m2, below);
+                let learnt = if edge.weight < below { Known::Exact(edge) } else { Known::AtLeast(below) };
+                best.judged.push((*source, learnt));
+                edge
+            }
+        };
+        if edge.weight < below {
+            most = label.weight + edge.weight;
+            let takeoff_m2 = judge.takeoff_m2(edge.spread_m2);
+            best.label = Some(Label { weight: most, from: Some((hops, *source)), loft: edge.loft, takeoff_m2 });
+        }
+    }
+    best
 }
 
 /// The edges out of one node.

@@ -74,7 +74,7 @@ impl ReliabilityPolicy {
             let steps = steps_from(graph, node, counter)?;
             let weighed = |step: super::reliability::Step| {
                 counter.pair()?;
-                let weight = judge.edge(graph, (node, step.target), takeoff_m2).weight;
+                let weight = judge.edge(graph, (node, step.target), takeoff_m2, f64::INFINITY).weight;
                 Ok(Successor { target: step.target, hops: step.hops, weight })
             };
             steps.into_iter().filter(of_use).map(weighed).collect()

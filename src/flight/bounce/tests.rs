@@ -9,7 +9,7 @@ use crate::{
     chain::{ConstrainedChain, PolygonalChain},
     draw::Draw,
     flight::{
-        Command, Distribution, Errors, FlownHop, HopErrors, HopTrials, JudgedHop, SEARCHED_DRAWS, TrialDraws, Uncertainty,
+        Command, Distribution, Errors, FlownHop, HopErrors, HopTrials, JudgedHop, REPORTED_DRAWS, TrialDraws, Uncertainty,
         resting_at,
     },
     ground::{ChainGround, ChainPosition, ContactFailure, DemGround, FirstContact, LiftoffVelocity, MapPosition, Windows},
@@ -259,7 +259,7 @@ fn estimates_count_what_flights_do() {
         let goal = Some((Point2::new(goal_m, 0.0), tolerance_m));
         let judged = JudgedHop { from, command, takeoff_sigma_m: [0.0; 2], goal, aims_at_rest: false };
         let survival =
-            HopTrials::new(&ground, &errors, Distribution::Normal, points.len(), SEARCHED_DRAWS).survival(&judged, u32::MAX);
+            HopTrials::new(&ground, &errors, Distribution::Normal, points.len(), REPORTED_DRAWS).survival(&judged, u32::MAX);
         let estimate = 1.0 - f64::from(survival.failed) / f64::from(survival.of);
         let random = Errors::new(errors.clone(), false);
         let mut draws = TrialDraws::seeded(3);

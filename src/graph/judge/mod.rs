@@ -2,6 +2,8 @@
 
 mod over_map;
 
+use std::cell::Cell;
+
 use nalgebra::{Point2, Vector2};
 
 pub(crate) use over_map::MapJudge;
@@ -160,40 +162,59 @@ impl Judge {
         matches!(self.takeoffs, TakeoffScatter::OfPosition)
     }
 
+    /// The least weight of an edge: that of one hop whose draws all survive.
+    pub(super) fn least_weight(&self) -> f64 {
+        let draws = f64::from(SEARCHED_DRAWS);
+        if matches!(self.trials, Trials::Slack) { 0.0 } else { -libm::log((draws + 0.5) / (draws + 1.0)) }
+    }
+
     /// Whether the risk of an edge depends on the hops before it.
     pub(super) const fn depends_on_hops_before(&self) -> bool {
         matches!((self.takeoffs, &self.trials), (TakeoffScatter::OfLandings, Trials::Chain(_) | Trials::Map(..)))
     }
 
-    /// The risk of an edge between two nodes, for a take-off that scatters about its node.
-    pub(super) fn edge(&self, graph: &HopGraph, (from, to): (usize, usize), takeoff_m2: [f64; 2]) -> Judged {
+    /// The risk of an edge between two nodes, for a take-off that scatters about its node. Draws end once the weight cannot be below
+    /// `below`; it is then that or more.
+    pub(super) fn edge(&self, graph: &HopGraph, (from, to): (usize, usize), takeoff_m2: [f64; 2], below: f64) -> Judged {
         let nodes = graph.nodes();
         let (takeoff, landing) = (*nodes.station(NodeId(from)), *nodes.station(NodeId(to)));
         let is_last = nodes.goal() == NodeId(to);
         match graph.edge(&takeoff, &landing) {
-            Ok(Edge::Hop(lofts)) => self.single(&takeoff, &landing, lofts, takeoff_m2, is_last),
+            Ok(Edge::Hop(lofts)) => self.single((&takeoff, &landing), lofts, takeoff_m2, is_last, below),
             Ok(Edge::Along(along)) => self.along((takeoff, landing), &along, takeoff_m2, is_last),
             // The pair was an edge when the lattice was built.
             Err(_) => Judged::IMPOSSIBLE,
         }
     }
 
-    /// The risk of one hop between two stations.
+    /// The risk of one hop between two stations; as [`edge`](Self::edge).
     pub(super) fn single(
         &self,
-        takeoff: &Station,
-        landing: &Station,
+        (takeoff, landing): (&Station, &Station),
         lofts: SlopeInterval,
         takeoff_m2: [f64; 2],
         is_last: bool,
+        below: f64,
     ) -> Judged {
         let Some(sight) = self.test.line_of_sight(takeoff, landing) else { return Judged::CERTAIN };
         let planned = Planned { takeoff: *takeoff, landing: *landing, sight, lofts, takeoff_m2, is_last };
         if self.choice != TakeoffChoice::MostReliable {
-            return self.weighed(&planned, self.test.loft(self.choice, sight, lofts));
+            return self.weighed(&planned, self.test.loft(self.choice, sight, lofts), below);
         }
-        let loft = self.most_reliable(sight, lofts, |loft, enough| self.survival(&planned, loft, enough));
-        Judged { loft: Some(loft), ..self.weighed(&planned, loft) }
+        let most = failures_enough(below);
+        let best: Cell<Option<(f64, Survival)>> = Cell::new(None);
+        let loft = self.most_reliable(sight, lofts, |loft, enough| {
+            let survival = self.survival(&planned, loft, enough.min(most));
+            if best.get().is_none_or(|(_, known)| survival.failed < known.failed) {
+                best.set(Some((loft, survival)));
+            }
+            survival
+        });
+        let judged = match best.get().filter(|(known, _)| *known == loft) {
+            Some((_, survival)) => self.weighed_after(survival, &planned, loft, below),
+            None => self.weighed(&planned, loft, below),
+        };
+        Judged { loft: Some(loft), ..judged }
     }
 
     /// The loft of the most reliable command of a hop over the map from where the robot believes to be; `None` for a chain.
@@ -219,15 +240,23 @@ impl Judge {
         most_reliable(self.test.envelope(), (sight, lofts), |loft, enough| survival(loft, enough).failed)
     }
 
-    /// The weight of a hop with a command.
-    fn weighed(&self, planned: &Planned, loft: f64) -> Judged {
+    /// The weight of a hop with a command; as [`edge`](Self::edge).
+    fn weighed(&self, planned: &Planned, loft: f64, below: f64) -> Judged {
         if matches!(self.trials, Trials::Slack) {
             return Judged { weight: -libm::log(slack_success(planned, loft).max(LEAST_SUCCESS)), ..Judged::CERTAIN };
         }
-        let Survival { of, failed, spread_m2 } = self.survival(planned, loft, u32::MAX);
-        let success = (f64::from(of - failed) + 0.5) / (f64::from(of) + 1.0);
-        let weight = -libm::log(success) + DOUBLED_WEIGHT * self.failing_share_of_doubled(planned, loft);
-        Judged { weight, loft: None, spread_m2 }
+        self.weighed_after(self.survival(planned, loft, failures_enough(below)), planned, loft, below)
+    }
+
+    /// The same after its draws were flown.
+    fn weighed_after(&self, Survival { of, failed, spread_m2 }: Survival, planned: &Planned, loft: f64, below: f64) -> Judged {
+        // Of draws that ended early, those not flown count as survivors.
+        let count = if failed > 0 { of.max(SEARCHED_DRAWS) } else { of };
+        let weight = -libm::log((f64::from(count - failed) + 0.5) / (f64::from(count) + 1.0));
+        if weight >= below {
+            return Judged { weight, loft: None, spread_m2 };
+        }
+        Judged { weight: weight + DOUBLED_WEIGHT * self.failing_share_of_doubled(planned, loft), loft: None, spread_m2 }
     }
 
     fn survival(&self, planned: &Planned, loft: f64, enough: u32) -> Survival {
@@ -298,7 +327,7 @@ impl Judge {
             let is_last = is_last && i + 1 == along.hops();
             let sight = arc.line_of_sight();
             let lofts = along.lofts(test, length_m);
-            self.weighed(&Planned { takeoff: from, landing: to, sight, lofts, takeoff_m2, is_last }, arc.loft())
+            self.weighed(&Planned { takeoff: from, landing: to, sight, lofts, takeoff_m2, is_last }, arc.loft(), f64::INFINITY)
         };
         let (mut weight, mut takeoff_m2) = (0.0, takeoff_m2);
         let mut spread_m2 = [0.0; 2];
@@ -346,6 +375,15 @@ fn most_reliable(
         }
     }
     best
+}
+
+/// The failures of [`SEARCHED_DRAWS`] with which a hop weighs at least this much: `-ln((K - f + 1/2) / (K + 1)) >= below`.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 0 and the number of draws")]
+fn failures_enough(below: f64) -> u32 {
+    let draws = f64::from(SEARCHED_DRAWS);
+    // One more keeps a failure of rounding from ending the draws of a hop that weighs less.
+    let failures = (draws + 0.5 - (draws + 1.0) * libm::exp(-below)).ceil() + 1.0;
+    if failures >= draws { u32::MAX } else { failures.max(1.0) as u32 }
 }
 
 /// The least success that a weight tells from none: a certain failure has a finite weight, so that paths with fewer of them are better.

@@ -212,7 +212,7 @@ fn the_estimate_of_biases_uniform_and_measured_errors_agrees_with_counted_flight
     ] {
         let differences = differences(&[errors]);
         let (worst, mean) = worst_and_mean(&differences);
-        assert!(differences.len() > 10 && worst < 0.08 && mean < mean_most, "{what}: {worst} {mean} of {}", differences.len());
+        assert!(differences.len() > 10 && worst < 0.1 && mean < mean_most, "{what}: {worst} {mean} of {}", differences.len());
     }
 }
 
@@ -304,7 +304,7 @@ fn the_most_reliable_command_fails_no_more_often_than_the_others() {
         let of = |choice| Case { test: &test, errors: scatter(), choice, tolerance_m: None };
         let Some(planned) = of(TakeoffChoice::MostReliable).planned(from_m, to_m) else { continue };
         let judge = of(TakeoffChoice::MostReliable).judge();
-        let chosen = judge.single(&planned.takeoff, &planned.landing, planned.lofts, planned.takeoff_m2, true);
+        let chosen = judge.single((&planned.takeoff, &planned.landing), planned.lofts, planned.takeoff_m2, true, f64::INFINITY);
         let chosen = judge.survival(&planned, chosen.loft.unwrap(), u32::MAX).failed;
         for choice in [TakeoffChoice::LeastSpeed, TakeoffChoice::MidRange] {
             let other = judge.survival(&planned, test.loft(choice, planned.sight, planned.lofts), u32::MAX).failed;
