@@ -821,7 +821,7 @@ const SIMULATE: [Trial; 29] = [
     ("--draws", &["simulate", "errors.toml", "-o", "landings.csv"], &["simulate", "errors.toml", "-o", "landings.csv", "--draws"]),
     ("--trials", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--trials", "50"]),
     ("--seed", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--seed", "9"]),
-    ("--policy", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--policy", "replan"]),
+    ("--policy", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--policy", "open-loop"]),
     ("--compare", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--compare"]),
     (
         "--until-half-width",

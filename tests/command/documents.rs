@@ -164,7 +164,7 @@ fn what_is_no_answer_is_refused_with_its_key() {
         (DocumentKind::Plan, "\"takeoff_cone_min_deg\"", "\"takeoff_cone_deg\"", "\"takeoff_cone_deg\" is no margin of a hop"),
         (
             DocumentKind::Simulate,
-            "\"policy\": \"open-loop\",\n  \"success_rate\"",
+            "\"policy\": \"replan\",\n  \"success_rate\"",
             "\"policy\": \"no-loop\",\n  \"success_rate\"",
             "is not as documents",
         ),

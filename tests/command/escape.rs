@@ -157,7 +157,7 @@ fn the_limit_is_repeated_as_typed_and_gives_the_same_bytes() {
 fn an_error_that_lifts_a_take_off_to_escape_loses_the_hopper() {
     let desk = desk();
     // The plan's hops take some 0.19 m/s of 0.1998: an error of 50 % lifts many over escape, none of which lands.
-    let errors = "[uncertainty]\ntakeoff_speed_sigma_fraction = 0.4\ngoal_tolerance_m = 1000\n";
+    let errors = "[uncertainty]\ntakeoff_speed_sigma_fraction = 0.4\ngoal_tolerance_m = 1000\npolicy = \"open-loop\"\n[search]\nrisk = \"ignored\"\n";
     desk.write("errors.toml", format!("{ON_BENNU}{errors}"));
     let ran = desk.run(&["simulate", "errors.toml", "--trials", "400", "-o", "rows.csv", "--format", "json"]);
     let document: Value = serde_json::from_str(&ran.stdout).unwrap();

@@ -7,13 +7,14 @@ use std::fs;
 use crate::desk::Desk;
 
 /// Every option of every command that names a picture, with a command line that ends in it.
-const PICTURES: [&[&str]; 10] = [
+const PICTURES: [&[&str]; 11] = [
     &["plan", "scenario.toml", "--plot"],
     &["plan", "scenario.toml", "--set", "hopper.takeoff_speed_max_m_s=1", "--plot"],
     &["check", "scenario.toml", "--prove", "--plot"],
     &["fan", "ground.tif", "--from", "5,5", "--length", "4", "--headings", "4", "--scenario", "map.toml", "--plot"],
     &["map", "ground.tif", "--start", "5,5", "--goal", "12,12", "--scenario", "map.toml", "--plot"],
     &["map", "ground.tif", "--start", "5,5", "--goal", "12,12", "--scenario", "map.toml", "--profiles"],
+    &["plan", "scenario.toml", "--set", "uncertainty.takeoff_speed_sigma_fraction=0.01", "--front", "hops,risk", "--plot-front"],
     &["simulate", "map.toml", "--trials", "20", "--plot"],
     &["simulate", "map.toml", "--trials", "20", "--plot-map"],
     &["trade", "scenario.toml", "--vary", "hopper.takeoff_speed_max_m_s=4:10:3", "--plot"],
