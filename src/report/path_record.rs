@@ -66,7 +66,8 @@ pub struct HopRecord {
     /// The same in standard deviations, where errors are given and the estimate was wanted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub margins_sigma: Option<SigmaMarginsRecord>,
-    /// The share of 256 fixed draws of its errors that this hop survives by itself, where errors are given and the estimate was wanted. The
+    /// The share of 256 fixed draws of its errors (1024 where heights have errors) that this hop survives by itself, where errors are given and
+    /// the estimate was wanted. The
     /// product over the hops is not the success of the path.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub success_estimated: Option<f64>,

@@ -122,7 +122,8 @@ fn threads_and_files_change_no_byte() {
         lines.next(),
         Some(
             "hopper.takeoff_speed_max_m_s,surface.friction_coefficient,verdict,hops,flight_time_s,energy_j_kg,peak_takeoff_speed_m_s,\
-             ground_distance_m,energy_j,mission_time_s,delta_v_m_s,propellant_kg,mass_end_kg,effort,error"
+             ground_distance_m,energy_j,mission_time_s,delta_v_m_s,propellant_kg,mass_end_kg,speed_margin_least_m_s,\
+             angle_margin_least_deg,angle_span_least_deg,effort,error"
         )
     );
     let rows: Value = serde_json::from_str(&document).unwrap();

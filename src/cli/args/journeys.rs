@@ -166,7 +166,7 @@ pub(crate) struct SimulateArgs {
     /// Success to be shown: exit status 1 where the lower end of the 95 % interval is below it [default: none]
     #[arg(long, value_name = "P", value_parser = success_share, conflicts_with = "experiment", allow_negative_numbers = true)]
     pub(crate) success_min: Option<f64>,
-    /// Tally of the trials (JSON) to write, which the library merges with those of other ranges
+    /// Tally of the trials (JSON) to write, which the library merges with those of other ranges [default: none]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["experiment", "compare"])]
     pub(crate) tally: Option<PathBuf>,
     /// Experiment to run instead: worst-drift (the paper's), cone-width (the paper's claim), sensitivity (what each error

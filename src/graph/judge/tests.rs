@@ -251,7 +251,7 @@ fn a_hop_without_errors_is_certain_and_its_risk_grows_with_them() {
         let errors = Uncertainty { friction_sigma: 0.02, height_sigma_m: 0.03, height_correlation_m: 3.0, ..scatter() };
         let case = Case { test: &test, errors: errors.scaled(factor), choice: TakeoffChoice::MidRange, tolerance_m: None };
         let planned = case.planned(3.0, 14.0).unwrap();
-        case.judge().weighed(&planned, test.loft(TakeoffChoice::MidRange, planned.sight, planned.lofts)).weight
+        case.judge().weighed(&planned, test.loft(TakeoffChoice::MidRange, planned.sight, planned.lofts), f64::INFINITY).weight
     };
     // All draws survive: (64 + 1/2) / 65.
     assert!((weight(0.0) + libm::log(64.5 / 65.0)).abs() < 1e-15, "{}", weight(0.0));

@@ -100,7 +100,7 @@ pub struct Simulated {
 
 /// The planned hops as the answer lists them: the same, whether or not the plan was estimated.
 fn planned_rows(planned: &Planned) -> Vec<HopRecord> {
-    planned.answer.path.iter().map(|hop| HopRecord { margins_sigma: None, ..hop.clone() }).collect()
+    planned.answer.path.iter().map(|hop| HopRecord { margins_sigma: None, success_estimated: None, ..hop.clone() }).collect()
 }
 
 /// Flies the trials of a plan under the errors of its scenario. Without a path nothing is flown, and the answer says so.
