@@ -9,6 +9,7 @@
 //!
 //! The same arguments give the same journeys on every machine.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program that prints")]
+#![expect(clippy::cast_precision_loss, reason = "counts of journeys and trials are small")]
 
 #[path = "../benches/support/mod.rs"]
 mod support;
@@ -79,7 +80,10 @@ fn journeys(wanted: &Wanted, of_machine: fn(&mut ChaCha8Rng) -> String) -> Resul
         write_chain_csv(&chain, fs::File::create(&file)?, &[])?;
         let body = ["moon", "mars", "ceres"][random.random_range(0..3)];
         let goal_m = segments as f64 - 1.0;
-        let mut toml = format!("[body]\nname = \"{body}\"\n[terrain]\nchain = {file:?}\nstart_x_m = 1.0\ngoal_x_m = {goal_m:.1}\n");
+        let mut toml = format!(
+            "[body]\nname = \"{body}\"\n[terrain]\nchain = \"{}\"\nstart_x_m = 1.0\ngoal_x_m = {goal_m:.1}\n",
+            file.display()
+        );
         toml.push_str(&of_machine(&mut random));
         all.push(Journey { toml, base: folder.clone() });
     }
@@ -88,8 +92,12 @@ fn journeys(wanted: &Wanted, of_machine: fn(&mut ChaCha8Rng) -> String) -> Resul
         let mut random = ChaCha8Rng::seed_from_u64(1_000_000 + number);
         let [start, goal] = straight_slice(&mut random, &read_dem(file)?.bounds());
         let mut toml = format!(
-            "[body]\nname = \"{body}\"\n[terrain]\ndem = {file:?}\naccept_map_scale = true\nstart_m = [{}, {}]\ngoal_m = [{}, {}]\n",
-            start.x, start.y, goal.x, goal.y
+            "[body]\nname = \"{body}\"\n[terrain]\ndem = \"{}\"\naccept_map_scale = true\nstart_m = [{}, {}]\ngoal_m = [{}, {}]\n",
+            file.display(),
+            start.x,
+            start.y,
+            goal.x,
+            goal.y
         );
         toml.push_str(&of_machine(&mut random));
         all.push(Journey { toml, base: folder.clone() });
@@ -127,7 +135,7 @@ fn any_machine(random: &mut ChaCha8Rng) -> String {
         "[hopper]\ntakeoff_speed_max_m_s = {takeoff_m_s}\nlanding_speed_max_m_s = {landing_m_s}\n[surface]\nfriction_coefficient = {friction}\n\
          [search]\ntakeoff_angle = \"{angle}\"\nrisk = \"{risk}\"\n[uncertainty]\n"
     );
-    let mut sigma = |key: &str, from: f64, to: f64| toml.push_str(&format!("{key} = {}\n", random.random_range(from..to)));
+    let mut sigma = |key: &str, from: f64, to: f64| toml += &one_key(key, random.random_range(from..to));
     sigma("takeoff_speed_sigma_fraction", 0.0, 0.02);
     sigma("takeoff_angle_sigma_deg", 0.0, 1.0);
     sigma("position_sigma_m", 0.0, 0.2);
@@ -135,12 +143,17 @@ fn any_machine(random: &mut ChaCha8Rng) -> String {
     sigma("goal_tolerance_m", 0.5, 3.0);
     // A third of the grounds are not as mapped.
     if random.random_range(0..3) == 0 {
-        let mut sigma = |key: &str, from: f64, to: f64| toml.push_str(&format!("{key} = {}\n", random.random_range(from..to)));
+        let mut sigma = |key: &str, from: f64, to: f64| toml += &one_key(key, random.random_range(from..to));
         sigma("friction_sigma", 0.0, 0.04);
         sigma("height_sigma_m", 0.001, 0.04);
         sigma("height_correlation_m", 1.0, 3.0);
     }
     toml
+}
+
+/// One line of TOML.
+fn one_key(key: &str, value: f64) -> String {
+    format!("{key} = {value}\n")
 }
 
 /// 2 % of speed, 1 degree, 3 m of tolerance, 5 to 8 m/s: the machine of the goal.
@@ -187,14 +200,13 @@ fn estimated(planned: &Planned) -> Result<f64, Failure> {
 /// The share of flights of one planned hop that come to rest.
 fn counted(planned: &Planned, hop: usize) -> Result<f64, Failure> {
     let path = planned.path.as_ref().ok_or("expected a path")?;
-    let one = HopPath { hops: vec![path.hops[hop].clone()], ..path.clone() };
+    let one = HopPath { hops: vec![path.hops[hop]], ..path.clone() };
     let (from, to) = (one.hops[0].takeoff, one.hops[0].landing);
-    let mission = match planned.dem_ground()? {
-        Some(ground) => Mission::over_dem(ground, one, from, to),
-        None => {
-            let station = |at: ContactPoint| at.station.ok_or("expected a station");
-            Mission::along_chain(planned.test.clone(), one, station(from)?, station(to)?)
-        }
+    let mission = if let Some(ground) = planned.dem_ground()? {
+        Mission::over_dem(ground, one, from, to)
+    } else {
+        let station = |at: ContactPoint| at.station.ok_or("expected a station");
+        Mission::along_chain(planned.test.clone(), one, station(from)?, station(to)?)
     };
     let errors = planned.case.scenario.uncertainty.clone().unwrap_or_default().errors;
     let options =

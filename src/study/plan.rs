@@ -16,6 +16,7 @@ use crate::{
     path::{Execution, HopPath, TooManyHops, Violation},
     progress::Progress,
     report::{HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, path_geojson, write_path_csv},
+    scenario::UncertaintyKeys,
 };
 
 /// What is wanted beside the path.
@@ -136,7 +137,7 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
     let front = match options.front {
         None => None,
         Some(Front::HopsRisk) => {
-            warnings.extend(case.scenario.uncertainty.as_ref().and_then(|keys| keys.warning()).map(str::to_owned));
+            warnings.extend(case.scenario.uncertainty.as_ref().and_then(UncertaintyKeys::warning).map(str::to_owned));
             Some(front(&case, (&test, ends), &searched, progress)?)
         }
     };

@@ -14,9 +14,10 @@ impl Simulation {
     /// The share of 256 fixed draws of its errors, 1024 where heights have errors, that every planned hop survives, begun at its planned take-off: from 0 to 1.
     ///
     /// A draw fails if the hop takes off out of its cone, leaves the known ground, lands out of its cone or too fast, or cannot rest where
-    /// it lands. Under replanning a hop aims short by its nominal bounces. How far from the goal the last hop rests does not count. The product over the hops is not the success of the path: friction
-    /// and heights are one draw for all of them, and a hop that is planned anew is another hop. See
-    /// [`estimated_success`](Self::estimated_success) for that.
+    /// it lands. Under replanning a hop aims short by its nominal bounces. How far from the goal the last hop rests does not count.
+    ///
+    /// The product over the hops is not the success of the path: friction and heights are one draw for all of them, and a hop that is
+    /// planned anew is another hop. See [`estimated_success`](Self::estimated_success) for that.
     pub fn hop_successes(&self, policy: Policy) -> Vec<f64> {
         match &self.ground_and_plan {
             GroundAndPlan::Chain(ground, plan) => {

@@ -28,7 +28,7 @@ fn number(value: &Value, path: &str) -> f64 {
     value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {value}"))
 }
 
-/// q = 0.35: 0.35 / 0.65 of 40 m beyond the landing; the time of the flight once more, by e_n = 0.5.
+/// q = 0.35: 0.35 / 0.65 of 40 m beyond the landing; the time of the flight once more, by `e_n = 0.5`.
 #[test]
 fn a_plan_states_its_bounces_and_their_time() {
     let desk = desk();

@@ -14,7 +14,7 @@ const SCENARIO: &str = "[body]\nname = \"mars\"\n[hopper]\ntakeoff_speed_max_m_s
 fn desk(errors: &str) -> Desk {
     let desk = Desk::new();
     desk.write("flat.csv", "x_m,z_m\n-50,0\n150,0\n");
-    std::fs::create_dir(desk.path().join("sub")).expect("a folder");
+    std::fs::create_dir(desk.path().join("sub")).unwrap();
     desk.write("sub/measured.csv", errors);
     desk.write("sub/measured.toml", format!("{SCENARIO}errors = \"measured.csv\"\n"));
     desk

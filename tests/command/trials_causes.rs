@@ -119,7 +119,12 @@ const ROLLING: &str = "data/scenarios/rolling_surely.toml";
 const PLANTED: [Planted; 9] = [
     Planted {
         scenario: ROLLING,
-        settings: &["search.risk=fewest-hops", "search.takeoff_angle=most-reliable", "uncertainty.goal_tolerance_m=0.3"],
+        settings: &[
+            "uncertainty.policy=open-loop",
+            "search.risk=fewest-hops",
+            "search.takeoff_angle=most-reliable",
+            "uncertainty.goal_tolerance_m=0.3",
+        ],
         key: "uncertainty.policy",
         applied: &["uncertainty.policy=replan"],
     },
@@ -131,7 +136,7 @@ const PLANTED: [Planted; 9] = [
     },
     Planted {
         scenario: ROLLING,
-        settings: &["search.risk=fewest-hops", "search.takeoff_angle=least-speed"],
+        settings: &["uncertainty.policy=open-loop", "search.risk=fewest-hops", "search.takeoff_angle=least-speed"],
         key: "search.takeoff_angle",
         applied: &["search.takeoff_angle=most-reliable"],
     },
