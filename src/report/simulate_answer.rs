@@ -23,7 +23,7 @@ pub struct SimulateAnswer {
     /// Both policies on the same draws, if requested.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub compare: Vec<SimulationRecord>,
-    /// Whether the success that was asked for is shown.
+    /// Whether the required success is shown.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub requirement: Option<SuccessRequirement>,
     /// After a success rate below 0.9: which keys of the scenario would help most, the first before the others.
@@ -34,7 +34,7 @@ pub struct SimulateAnswer {
 /// A success rate that trials have to show.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SuccessRequirement {
-    /// The success that was asked for.
+    /// The required success.
     pub success_min: f64,
     /// Whether the lower end of the 95 % interval, under the policy of the scenario, is at least that.
     pub success_min_shown: bool,
@@ -50,7 +50,7 @@ impl SimulateAnswer {
         self
     }
 
-    /// Whether the success that was asked for, if any was, is shown.
+    /// Whether the required success, if there is one, is shown.
     pub fn shows_success(&self) -> bool {
         self.requirement.is_none_or(|requirement| requirement.success_min_shown)
     }
@@ -70,7 +70,7 @@ impl SimulateAnswer {
         sheet.into_text()
     }
 
-    /// Whether the success that was asked for is shown, as a sentence.
+    /// Whether the required success is shown, as a sentence.
     fn requirement_text(&self) -> Option<String> {
         let SuccessRequirement { success_min, success_min_shown } = self.requirement?;
         let SimulationRecord { success_rate, success_rate_ci95: [low, _], .. } = self.simulation.as_ref()?;
