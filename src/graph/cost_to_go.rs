@@ -95,11 +95,19 @@ impl CostToGo {
         self.policy.as_ref().map_or(&[], |policy| policy.successors(node))
     }
 
-    /// The node nearest to a position along the chain.
+    /// Whether the reliability policy leads over a node, or there is none.
+    pub fn leads_over(&self, node: NodeId) -> bool {
+        self.policy.as_ref().is_none_or(|policy| policy.leads_over(node))
+    }
+
+    /// The node nearest to a position along the chain, of those that the reliability policy leads over.
     pub fn nearest_node(&self, x_m: f64) -> NodeId {
         let stations = self.nodes.stations();
-        let after = stations.partition_point(|station| station.point.x_m < x_m).min(stations.len() - 1);
-        let before = after.saturating_sub(1);
+        let leads = |node: &usize| self.leads_over(NodeId(*node));
+        let at = stations.partition_point(|station| station.point.x_m < x_m).min(stations.len() - 1);
+        let goal = self.nodes.goal().index();
+        let after = (at..stations.len()).find(leads).unwrap_or(goal);
+        let before = (0..at).rev().find(leads).unwrap_or(after);
         let away_m = |node: usize| (stations[node].point.x_m - x_m).abs();
         NodeId(if away_m(before) <= away_m(after) { before } else { after })
     }

@@ -27,6 +27,7 @@ mod refusals;
 mod reliability;
 mod reliability_policy;
 mod search;
+mod thinned;
 mod usable;
 
 pub use cost::{Cost, Effort, EffortUnit};

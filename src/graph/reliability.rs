@@ -8,6 +8,7 @@ use super::{
     Cost, HopGraph, Leg, NodeSet, Outcome, PointSpacing, RiskModel, SearchError, SearchOptions,
     judge::{Judge, Judged},
     search,
+    thinned::kept_nodes,
 };
 use crate::{
     chain::Station,
@@ -118,7 +119,13 @@ pub fn most_reliable_paths(
     let mut counter = meter.counter();
     let graph = HopGraph::new(test, nodes, options.effort, options.takeoff, options.split);
     let extra = |fewest: u64| reliability.extra_hops(fewest);
-    let Some(lattice) = Lattice::within(&graph, &extra, &mut counter)? else { return Ok(Vec::new()) };
+    let kept = kept_nodes(test, nodes, options, reliability);
+    let lattice = match Lattice::within(&graph, &kept, &extra, &mut counter)? {
+        // Where no path leads over the nodes kept, all of them count.
+        None if kept.contains(&false) => Lattice::within(&graph, &vec![true; kept.len()], &extra, &mut counter)?,
+        found => found,
+    };
+    let Some(lattice) = lattice else { return Ok(Vec::new()) };
     let judge = Judge::new(test, options, &reliability.model, reliability.goal_tolerance_m);
     let labels = lattice.labelled(&graph, &judge, &mut counter)?;
     let mut least = f64::INFINITY;
@@ -174,10 +181,15 @@ pub fn search_most_reliable(
 
 /// The spacing with which the longest hop over level ground spans ten nodes.
 fn ten_nodes_a_hop(test: &HopTest) -> Option<PointSpacing> {
+    ten_nodes_a_hop_m(test).map(PointSpacing::AtMostM)
+}
+
+/// That spacing, m; `None` if no hop is limited.
+pub(super) fn ten_nodes_a_hop_m(test: &HopTest) -> Option<f64> {
     let (takeoff_m_s, landing_m_s) = test.chain().speed_bounds_m_s();
     let speed_m_s = takeoff_m_s.min(landing_m_s);
     let spacing_m = speed_m_s * speed_m_s / test.gravity_m_s2() / 10.0;
-    (spacing_m.is_finite() && spacing_m > 0.0).then_some(PointSpacing::AtMostM(spacing_m))
+    (spacing_m.is_finite() && spacing_m > 0.0).then_some(spacing_m)
 }
 
 /// Of a front, the path to fly: the fewest hops whose success is at least 0.98 of the best; where trials are not flown, the most
@@ -196,8 +208,9 @@ fn ten_nodes_a_hop(test: &HopTest) -> Option<PointSpacing> {
 pub fn preferred_path(front: &[ReliablePath]) -> Option<usize> {
     const ENOUGH: f64 = 0.98;
     let last = front.len().checked_sub(1)?;
-    let best = front.iter().map(|path| path.success).try_fold(0.0, |best: f64, success| Some(best.max(success?)));
-    Some(best.and_then(|best| front.iter().position(|path| path.success >= Some(ENOUGH * best))).unwrap_or(last))
+    let best = front.iter().filter_map(|path| path.success).reduce(f64::max);
+    let enough = |best: f64| front.iter().position(|path| path.success.is_some_and(|success| success >= ENOUGH * best));
+    Some(best.and_then(enough).unwrap_or(last))
 }
 
 /// Of a front, the path to fly under a budget of success: the fewest hops whose success is at least `success_min`; without any, the one of
@@ -256,8 +269,13 @@ struct Label {
 type Labels = BTreeMap<u64, BTreeMap<usize, Label>>;
 
 impl Lattice {
-    /// The edges out of every node within the budget, breadth first by hops; `None` if the goal is not reached.
-    fn within(graph: &HopGraph, extra: &dyn Fn(u64) -> u64, counter: &mut PairCounter<'_>) -> Result<Option<Self>, Cancelled> {
+    /// The edges out of every node kept within the budget, breadth first by hops; `None` if the goal is not reached.
+    fn within(
+        graph: &HopGraph,
+        kept: &[bool],
+        extra: &dyn Fn(u64) -> u64,
+        counter: &mut PairCounter<'_>,
+    ) -> Result<Option<Self>, Cancelled> {
         let nodes = graph.nodes();
         let count = nodes.stations().len();
         let (start, goal) = (nodes.start().index(), nodes.goal().index());
@@ -276,7 +294,7 @@ impl Lattice {
                 if from_start[node] < hops {
                     continue;
                 }
-                steps[node] = steps_from(graph, node, counter)?;
+                steps[node] = steps_from(graph, kept, node, counter)?;
                 for step in &steps[node] {
                     let reached = hops + step.hops;
                     if reached < from_start[step.target] {
@@ -400,15 +418,20 @@ fn best_into(
     best
 }
 
-/// The edges out of one node.
+/// The edges out of one node to nodes that are kept.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub(super) fn steps_from(graph: &HopGraph, node: usize, counter: &mut PairCounter<'_>) -> Result<Vec<Step>, Cancelled> {
+pub(super) fn steps_from(
+    graph: &HopGraph,
+    kept: &[bool],
+    node: usize,
+    counter: &mut PairCounter<'_>,
+) -> Result<Vec<Step>, Cancelled> {
     let nodes = graph.nodes();
     let takeoff = nodes.station(NodeId(node));
     let mut steps = Vec::new();
-    for target in graph.landings(takeoff).filter(|&target| target != node) {
+    for target in graph.landings(takeoff).filter(|&target| target != node && kept[target]) {
         counter.pair()?;
         if let Ok(edge) = graph.edge(takeoff, nodes.station(NodeId(target))) {
             steps.push(Step { target, hops: edge.hops() });

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::{Cost, HopGraph, ReliabilityOptions, SearchOptions, judge::Judge, reliability::steps_from};
+use super::{Cost, HopGraph, ReliabilityOptions, SearchOptions, judge::Judge, reliability::steps_from, thinned::kept_nodes};
 use crate::{
     progress::{Cancelled, Detail, Meter, PairCounter, Progress, Stage},
     quantity::NodeId,
@@ -19,6 +19,8 @@ const KEPT: usize = 32;
 #[derive(Clone, Debug)]
 pub(super) struct ReliabilityPolicy {
     judge: Judge,
+    /// The nodes that it leads over; the others have no successors.
+    kept: Arc<Vec<bool>>,
     /// The edges out of every node within the hop budget that they were judged for.
     edges: Arc<Vec<Vec<Successor>>>,
     /// For every node, at most [`KEPT`] successors.
@@ -67,11 +69,11 @@ impl ReliabilityPolicy {
         let judge = Judge::new(graph.test(), options, &reliability.model, reliability.goal_tolerance_m);
         // A robot that replans takes off where it believes to be, whatever came before.
         let takeoff_m2 = judge.takeoff_m2([0.0; 2]);
-        let edges = |counter: &mut PairCounter<'_>, node: usize| -> Result<Vec<Successor>, Cancelled> {
+        let edges = |kept: &[bool], counter: &mut PairCounter<'_>, node: usize| -> Result<Vec<Successor>, Cancelled> {
             counter.check()?;
-            let Some(own) = fewest(node).filter(|_| node != goal) else { return Ok(Vec::new()) };
+            let Some(own) = fewest(node).filter(|_| node != goal && kept[node]) else { return Ok(Vec::new()) };
             let of_use = |step: &super::reliability::Step| fewest(step.target).is_some_and(|rest| step.hops + rest <= own + extra);
-            let steps = steps_from(graph, node, counter)?;
+            let steps = steps_from(graph, kept, node, counter)?;
             let weighed = |step: super::reliability::Step| {
                 counter.pair()?;
                 let weight = judge.edge(graph, (node, step.target), takeoff_m2, f64::INFINITY).weight;
@@ -79,17 +81,34 @@ impl ReliabilityPolicy {
             };
             steps.into_iter().filter(of_use).map(weighed).collect()
         };
-        let edges = (0..costs.len()).into_par_iter().map_init(|| meter.counter(), edges).collect::<Result<Vec<_>, _>>();
-        meter.check()?;
-        Ok(Self::ranked(judge, Arc::new(edges?), (costs, goal), extra))
+        let all_edges = |kept: &[bool]| -> Result<Vec<_>, Cancelled> {
+            let of_node = |counter: &mut PairCounter<'_>, node: usize| edges(kept, counter, node);
+            let edges = (0..costs.len()).into_par_iter().map_init(|| meter.counter(), of_node).collect::<Result<Vec<_>, _>>();
+            meter.check()?;
+            edges
+        };
+        let start = graph.nodes().start();
+        let kept = kept_nodes(graph.test(), graph.nodes(), options, reliability);
+        let policy = Self::ranked(judge.clone(), (Arc::new(all_edges(&kept)?), Arc::new(kept)), (costs, goal), extra);
+        let leads_nowhere = fewest(start.index()).is_some_and(|hops| hops > 0) && policy.successors(start).is_empty();
+        if !leads_nowhere || !policy.kept.contains(&false) {
+            return Ok(policy);
+        }
+        let kept = vec![true; costs.len()];
+        Ok(Self::ranked(judge.clone(), (Arc::new(all_edges(&kept)?), Arc::new(kept)), (costs, goal), extra))
     }
 
     /// The same with fewer hops allowed beyond the fewest.
     pub(super) fn with_fewer_extra_hops(&self, costs: &[Option<Cost>], goal: usize, extra: u64) -> Self {
-        Self::ranked(self.judge.clone(), Arc::clone(&self.edges), (costs, goal), extra)
+        Self::ranked(self.judge.clone(), (Arc::clone(&self.edges), Arc::clone(&self.kept)), (costs, goal), extra)
     }
 
-    fn ranked(judge: Judge, edges: Arc<Vec<Vec<Successor>>>, (costs, goal): (&[Option<Cost>], usize), extra: u64) -> Self {
+    fn ranked(
+        judge: Judge,
+        (edges, kept): (Arc<Vec<Vec<Successor>>>, Arc<Vec<bool>>),
+        (costs, goal): (&[Option<Cost>], usize),
+        extra: u64,
+    ) -> Self {
         let fewest = |node: usize| costs[node].map(Cost::hops);
         let mut table = Table::new(costs, extra);
         for allowed in 0..=table.most_hops {
@@ -118,8 +137,14 @@ impl ReliabilityPolicy {
             #[cfg(test)]
             weights: (0..costs.len()).map(|node| fewest(node).map_or(f64::INFINITY, |own| table.at(node, own + extra))).collect(),
             judge,
+            kept,
             edges,
         }
+    }
+
+    /// Whether it leads over a node.
+    pub(super) fn leads_over(&self, node: NodeId) -> bool {
+        self.kept[node.index()]
     }
 
     /// The judge of its edges.

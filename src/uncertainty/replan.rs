@@ -194,7 +194,8 @@ impl MapReplan {
             return None;
         }
         let away2 = |node: &MapPosition| (node.at - from.at).norm_squared();
-        let nearest = (0..self.nodes.len()).min_by(|&a, &b| away2(&self.nodes[a]).total_cmp(&away2(&self.nodes[b])))?;
+        let leads = (0..self.nodes.len()).filter(|&node| self.to_go.leads_over(NodeId(node)));
+        let nearest = leads.min_by(|&a, &b| away2(&self.nodes[a]).total_cmp(&away2(&self.nodes[b])))?;
         let mut successors = self.to_go.reliable_successors(NodeId(nearest)).iter();
         let commands = if self.ground.hopper().limits().steps.is_continuous() { CommandKind::Exact } else { CommandKind::InSteps };
         successors.find_map(|node| self.hop_to(from, node.index(), None, commands)).map(|(command, _)| command)
