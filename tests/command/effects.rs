@@ -8,7 +8,7 @@ use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
 const TELLING: [(&str, &str); 84] = [
-    ("body.name", "earth"),
+    ("body.name", "moon"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
     ("hopper.takeoff_speed_max_m_s", "1.2"),
