@@ -48,11 +48,17 @@ struct Weighs {
     risk: bool,
     /// A budget of success.
     success: bool,
+    /// Errors, which a plan estimates.
+    errors: bool,
 }
 
 impl Weighs {
     fn of(scenario: &Scenario) -> Self {
-        Self { risk: scenario.risk != ReliabilityUse::Ignored, success: scenario.budget.estimated_success_min.is_some() }
+        Self {
+            risk: scenario.risk != ReliabilityUse::Ignored,
+            success: scenario.budget.estimated_success_min.is_some(),
+            errors: scenario.uncertainty.as_ref().is_some_and(|keys| !keys.errors.is_none()),
+        }
     }
 }
 
@@ -97,7 +103,7 @@ impl Purpose {
 
     /// Whether its answer can depend on a key, where the choice of a path weighs risk or does not, and estimates a budget of success or does
     /// not.
-    fn uses(self, key: &Key, Weighs { risk: weighs_risk, success }: Weighs) -> bool {
+    fn uses(self, key: &Key, Weighs { risk: weighs_risk, success, errors }: Weighs) -> bool {
         let on_a_dem = matches!(self, Self::Fan | Self::Map { .. });
         let flies = matches!(self, Self::Run | Self::Simulate | Self::Map { trials: true, .. });
         let by_risk = matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Compare);
@@ -136,7 +142,7 @@ impl Purpose {
             ("derating", _) => !matches!(self, Self::Map { .. }),
             // The trials of an estimate have a number and a seed of their own.
             ("uncertainty", "trials" | "seed") => flies,
-            ("uncertainty", _) => flies || by_success || matches!(self, Self::Plan) || (by_risk && weighs_risk),
+            ("uncertainty", _) => flies || by_success || (errors && matches!(self, Self::Plan)) || (by_risk && weighs_risk),
             _ => true,
         }
     }

@@ -89,7 +89,7 @@ const TELLING: [(&str, &str); 84] = [
     ("uncertainty.errors", "none.csv"),
     ("uncertainty.goal_tolerance_m", "0.01"),
     ("uncertainty.hop_limit", "1"),
-    ("uncertainty.policy", "replan"),
+    ("uncertainty.policy", "open-loop"),
     ("uncertainty.trials", "77"),
     ("uncertainty.seed", "5"),
 ];
