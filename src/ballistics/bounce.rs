@@ -62,7 +62,7 @@ pub struct LevelBounces {
 /// ```
 ///
 /// `N`, the number of bounces, is the greatest `k` with `sqrt((e_t^k v_x)^2 + (e_n^k v_z)^2) >= settling speed`; it is at most
-/// `ln(v / settling speed) / ln(1 / max(e_n, e_t))`. With `e_n` = 0 there is none. For small settling speeds the shares of the hop tend to
+/// `ln(v / settling speed) / ln(1 / max(e_n, e_t))`. With `e_n` = 0 the body stays where it lands. For small settling speeds the shares of the hop tend to
 /// `e_n / (1 - e_n)` of its time and `q / (1 - q)` of its length, at any gravity.
 ///
 /// Source: the geometric series of a bouncing ball, with the second coefficient for the speed along the ground.

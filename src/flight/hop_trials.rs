@@ -98,6 +98,11 @@ impl<G: FirstContact + Windows> HopTrials<G> {
         Self { nominal: ground.clone(), plain: errand(uncertainty.clone()), doubled: errand(uncertainty.scaled(2.0)), draws }
     }
 
+    /// The ground without errors of heights or friction.
+    pub(crate) const fn ground(&self) -> &G {
+        &self.nominal
+    }
+
     /// What becomes of a hop under the errors; `enough`: the count of failures after which no more draws are flown.
     pub(crate) fn survival(&self, hop: &JudgedHop<G::Contact>, enough: u32) -> Survival {
         self.flown(&self.plain, hop, 1.0, enough)

@@ -74,10 +74,12 @@ impl CostToGo {
         Ok(Self { policy: Some(policy), ..costs })
     }
 
-    /// The same with this many hops allowed beyond the fewest, at most those of its reliability policy; without a policy, unchanged.
+    /// The same for a journey of this many hops from the start: its reliability policy allows as many beyond the fewest, at most those that
+    /// it was computed for. Without a policy, or without a path from the start, unchanged.
     #[must_use]
-    pub fn with_fewer_extra_hops(&self, extra: u64) -> Self {
-        let goal = self.nodes.goal().index();
+    pub fn with_hops(&self, hops: u64) -> Self {
+        let Some(fewest) = self.of_node(self.nodes.start()).map(Cost::hops) else { return self.clone() };
+        let (goal, extra) = (self.nodes.goal().index(), hops.saturating_sub(fewest));
         let policy = self.policy.as_ref().map(|policy| policy.with_fewer_extra_hops(&self.costs, goal, extra));
         Self { policy, ..self.clone() }
     }
@@ -95,7 +97,7 @@ impl CostToGo {
         self.policy.as_ref().map_or(&[], |policy| policy.successors(node))
     }
 
-    /// Whether the reliability policy leads over a node, or there is none.
+    /// Whether the reliability policy leads over a node; true without a policy.
     pub fn leads_over(&self, node: NodeId) -> bool {
         self.policy.as_ref().is_none_or(|policy| policy.leads_over(node))
     }

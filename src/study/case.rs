@@ -2,7 +2,7 @@
 
 use std::{
     path::{Path, PathBuf},
-    sync::Arc,
+    sync::{Arc, OnceLock},
 };
 
 use super::{
@@ -10,6 +10,7 @@ use super::{
 };
 use crate::{
     chain::Station,
+    ground::DemGround,
     hop::HopTest,
     report::{CrsRecord, MapKnowledge},
     scenario::{Scenario, TerrainSource, scenario_document},
@@ -49,6 +50,8 @@ pub struct Case {
     derated: Option<Box<Prepared>>,
     /// The commands that the chain is prepared for.
     commands: Commands,
+    /// The whole raster with its overlays, once trials have read it.
+    pub(super) raster: Arc<OnceLock<DemGround>>,
 }
 
 /// The scenario under the limits that planning may use, for these commands.
@@ -88,7 +91,7 @@ impl Case {
             let mut prepared = prepare(&whole, terrain, base)?;
             let (scenario, of_errors) = with_measured_errors(scenario, base)?;
             prepared.warnings.extend(of_errors);
-            return Ok(Self { scenario, base: base.to_path_buf(), prepared, derated: None, commands });
+            return Ok(Self { scenario, base: base.to_path_buf(), prepared, derated: None, commands, raster: Arc::default() });
         }
         let survey = Survey::of(&whole, terrain, base)?;
         let mut case = Self::over(&survey, scenario, base, commands)?;
@@ -115,7 +118,7 @@ impl Case {
         let derated = derated.map(|derated| survey.prepare_derated(&whole, &derated)).transpose()?.map(Box::new);
         let mut prepared = survey.prepare(&whole)?;
         prepared.warnings.extend(of_errors);
-        Ok(Self { prepared, scenario, base: base.to_path_buf(), derated, commands })
+        Ok(Self { prepared, scenario, base: base.to_path_buf(), derated, commands, raster: Arc::default() })
     }
 
     /// The same case for these commands: its chain is prepared again if they make a difference.

@@ -3,14 +3,14 @@
 use super::{Case, DemReading, Overlays, SimulateError};
 use crate::{ground::DemGround, scenario::TerrainSource};
 
-/// Reads the raster of a case with its overlays; `None` if its terrain is a mesh or a chain.
+/// The raster of a case with its overlays, read once for all questions about the case; `None` if its terrain is a mesh or a chain.
 ///
 /// # Errors
 /// [`SimulateError::Dem`] and [`SimulateError::Overlay`].
 pub(super) fn dem_ground(case: &Case) -> Result<Option<DemGround>, SimulateError> {
-    // Read for hops beside the line.
-    if let Some(ground) = &case.prepared.beside_line {
-        return Ok(Some(ground.as_ref().clone()));
+    // That of hops beside the line, or of an earlier question.
+    if let Some(ground) = case.prepared.beside_line.as_deref().or_else(|| case.raster.get()) {
+        return Ok(Some(ground.clone()));
     }
     let Some(TerrainSource::Dem { path, .. }) = &case.scenario.terrain else { return Ok(None) };
     let file = case.base.join(path);
@@ -19,5 +19,5 @@ pub(super) fn dem_ground(case: &Case) -> Result<Option<DemGround>, SimulateError
     let coordinates = Some(&dem.georeference().coordinate_system);
     let overlays = Overlays::read(&case.scenario, &case.base, coordinates, dem.bounds())
         .map_err(|problem| SimulateError::Overlay(Box::new(problem)))?;
-    Ok(Some(overlays.ground(dem, &case.scenario)))
+    Ok(Some(case.raster.get_or_init(|| overlays.ground(dem, &case.scenario)).clone()))
 }

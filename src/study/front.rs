@@ -84,6 +84,15 @@ pub(super) fn front(
     Ok(FrontRecord::improving(paths.iter().filter_map(row)))
 }
 
+/// What the estimates of a front say.
+#[derive(Debug, Default)]
+pub(super) struct Estimated {
+    /// What the budget says of the path to fly; `None` without a budget or without a path.
+    pub(super) budget: Option<SuccessBudgetRecord>,
+    /// The costs by which its trials replan, with as many hops as the scenario allows; `None` open loop.
+    pub(super) to_go: Option<Arc<CostToGo>>,
+}
+
 /// A journey whose paths are flown in trials.
 #[derive(Clone, Debug)]
 pub(super) struct FlownJourney<'a> {
@@ -131,18 +140,9 @@ impl FlownJourney<'_> {
         Ok(Simulation::new(&mission, errors)?)
     }
 
-    /// The costs by which trials replan over the nodes of an answer, with as many hops more than the fewest as its path has.
+    /// The costs by which trials replan over the nodes of an answer, with as many hops as the scenario allows: see
+    /// [`CostToGo::with_hops`] for those of a path.
     pub(super) fn costs_to_go(&self, found: &graph::Answer, progress: &dyn Progress) -> Result<CostToGo, SimulateError> {
-        let to_go = self.costs_with_all_hops(found, progress)?;
-        let fewest = to_go.of_node(to_go.nodes().start()).map(graph::Cost::hops);
-        Ok(match found.hops().zip(fewest) {
-            Some((hops, fewest)) => to_go.with_fewer_extra_hops(hops.saturating_sub(fewest)),
-            None => to_go,
-        })
-    }
-
-    /// The same with as many hops as the scenario allows.
-    fn costs_with_all_hops(&self, found: &graph::Answer, progress: &dyn Progress) -> Result<CostToGo, SimulateError> {
         let nodes = NodeSet::new(self.test.chain(), self.ends.0, self.ends.1, found.spacing)?;
         let options = &self.scenario.search;
         let reliability = self.scenario.reliability(self.ground);
@@ -155,34 +155,43 @@ impl FlownJourney<'_> {
         Ok(CostToGo::with_reliability(self.test, nodes, options, &reliability, progress)?)
     }
 
-    /// The share of fixed trials of one path that reach the goal.
-    pub(super) fn success_of(
+    /// The costs by which trials of the path of an answer replan; `known`: those of all hops, where the choice of the path computed them.
+    pub(super) fn costs_of_path(
         &self,
         found: &graph::Answer,
+        known: Option<&Arc<CostToGo>>,
+        progress: &dyn Progress,
+    ) -> Result<Arc<CostToGo>, SimulateError> {
+        let all = known.map_or_else(|| self.costs_to_go(found, progress).map(Arc::new), |known| Ok(Arc::clone(known)))?;
+        Ok(found.hops().map_or_else(|| Arc::clone(&all), |hops| Arc::new(all.with_hops(hops))))
+    }
+
+    /// The share of fixed trials of one path that reach the goal. `known`: as in [`costs_of_path`](Self::costs_of_path).
+    pub(super) fn success_of(
+        &self,
+        (found, known): (&graph::Answer, Option<&Arc<CostToGo>>),
         path: &HopPath,
         options: &TrialOptions,
         progress: &dyn Progress,
     ) -> Result<f64, SimulateError> {
         let replans = options.policy == Policy::Replan;
-        let to_go = replans.then(|| self.costs_to_go(found, progress)).transpose()?.map(Arc::new);
+        let to_go = replans.then(|| self.costs_of_path(found, known, progress)).transpose()?;
         Ok(self.simulation(path, to_go.as_ref())?.estimated_success(options, progress)?)
     }
 
     /// Estimates the success of the paths of a front, and takes the one to fly: [`preferred_path`], or under a budget of success
     /// [`path_within_budget`].
     ///
-    /// # Returns
-    /// What the budget says of that path; `None` without a budget or without a path.
     pub(super) fn estimate(
         &self,
         found: &mut graph::Answer,
         front: &mut [ReliablePath],
         progress: &dyn Progress,
-    ) -> Result<Option<SuccessBudgetRecord>, SimulateError> {
-        let Outcome::Path { legs, .. } = &found.outcome else { return Ok(None) };
+    ) -> Result<Estimated, SimulateError> {
+        let Outcome::Path { legs, .. } = &found.outcome else { return Ok(Estimated::default()) };
         // Who is at the goal already is there for certain.
         let stays = legs.is_empty();
-        self.fly_front(found, front, progress)?;
+        let to_go = self.fly_front(found, front, progress)?;
         let least = self.scenario.budget.estimated_success_min;
         let within = least.and_then(|least| path_within_budget(front, least));
         let preferred = within.map(|(path, _)| path).or_else(|| preferred_path(front));
@@ -192,34 +201,33 @@ impl FlownJourney<'_> {
         }
         let success = preferred.and_then(|path| Some((path.cost.hops(), path.success?)));
         let met = stays || within.is_some_and(|(_, met)| met);
-        Ok(least.map(|least| SuccessBudgetRecord::new(least, met, if stays { Some((0, 1.0)) } else { success })))
+        let budget = least.map(|least| SuccessBudgetRecord::new(least, met, if stays { Some((0, 1.0)) } else { success }));
+        Ok(Estimated { budget, to_go })
     }
 
     /// Estimates the success of the paths of a front.
     ///
     /// A robot that replans and may take more hops is another robot: every path is estimated with the hops that it has.
+    ///
+    /// # Returns
+    /// The costs by which it replans, with as many hops as the scenario allows; `None` open loop.
     pub(super) fn fly_front(
         &self,
         found: &graph::Answer,
         front: &mut [ReliablePath],
         progress: &dyn Progress,
-    ) -> Result<(), SimulateError> {
-        let Some((keys, first)) = self.scenario.uncertainty.as_ref().zip(front.first().map(|path| path.cost.hops())) else {
-            return Ok(());
-        };
+    ) -> Result<Option<Arc<CostToGo>>, SimulateError> {
+        let Some(keys) = self.scenario.uncertainty.as_ref().filter(|_| !front.is_empty()) else { return Ok(None) };
         let replans = keys.policy == Policy::Replan;
-        let to_go = replans.then(|| self.costs_with_all_hops(found, progress)).transpose()?;
-        // A front over fewer nodes than those of the costs may begin with more hops.
-        let of_start = to_go.as_ref().and_then(|to_go| to_go.of_node(to_go.nodes().start())).map(graph::Cost::hops);
-        let fewest = of_start.map_or(first, |hops| hops.min(first));
+        let all = replans.then(|| self.costs_to_go(found, progress)).transpose()?.map(Arc::new);
         for number in flown_of(front.len()) {
             let path = &mut front[number];
             // A path of too many hops to list, or without commands of the machine, is not flown.
             let Ok(hops) = self.generated(path) else { continue };
-            let to_go = to_go.as_ref().map(|to_go| Arc::new(to_go.with_fewer_extra_hops(path.cost.hops() - fewest)));
+            let to_go = all.as_ref().map(|all| Arc::new(all.with_hops(path.cost.hops())));
             path.success = Some(self.simulation(&hops, to_go.as_ref())?.estimated_success(&keys.options(), progress)?);
         }
-        Ok(())
+        Ok(all)
     }
 
     fn generated(&self, path: &ReliablePath) -> Result<HopPath, PathError> {

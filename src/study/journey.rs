@@ -1,10 +1,16 @@
 //! The search for a journey, and the proof where one is requested: what check, plan, compare and require share.
 
-use super::{Case, CaseError, SimulateError, dem_ground::dem_ground, front::FlownJourney};
+use std::sync::Arc;
+
+use super::{
+    Case, CaseError, SimulateError,
+    dem_ground::dem_ground,
+    front::{Estimated, FlownJourney},
+};
 use crate::{
     chain::Station,
     graph::{
-        self, Outcome, ReliabilityUse, ReliablePath, SearchError,
+        self, CostToGo, Outcome, ReliabilityUse, ReliablePath, SearchError,
         proof::{Bounds, BoundsOptions, bounds},
         search_most_reliable,
     },
@@ -57,6 +63,8 @@ pub(super) struct Searched {
     pub(super) reliable_paths: Vec<ReliablePath>,
     /// What the budget of success says of the path, where the scenario has one.
     pub(super) success: Option<SuccessBudgetRecord>,
+    /// The costs by which trials replan, where the choice of the path computed them.
+    pub(super) to_go: Option<Arc<CostToGo>>,
     /// The bounds, and the budget of cells.
     pub(super) proof: Option<(Bounds, usize)>,
 }
@@ -105,7 +113,7 @@ impl Searched {
 
     /// The answer of a search that does not weigh reliability.
     const fn of(found: graph::Answer) -> Self {
-        Self { found, reliable_paths: Vec::new(), success: None, proof: None }
+        Self { found, reliable_paths: Vec::new(), success: None, to_go: None, proof: None }
     }
 
     /// How reliably the path of the answer is flown, under the policy of the scenario, and how its hops scatter; `None` without errors.
@@ -127,7 +135,7 @@ impl Searched {
         let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
         let success_estimated = match known {
             Some(share) => share,
-            None => journey.success_of(&self.found, path, &keys.options(), progress).map_err(Box::new)?,
+            None => journey.success_of((&self.found, self.to_go.as_ref()), path, &keys.options(), progress).map_err(Box::new)?,
         };
         let success = SuccessEstimate { success_estimated, success_policy: keys.policy };
         let simulation = journey.simulation(path, None).map_err(Box::new)?;
@@ -182,10 +190,7 @@ pub(super) fn search(
 ) -> Result<Searched, JourneyError> {
     let scenario = &case.scenario;
     let options = &scenario.search;
-    if !weighs_reliability(scenario) {
-        return Ok(Searched::of(graph::search(test, ends.0, ends.1, options, progress)?));
-    }
-    let flown = scenario.uncertainty.is_some();
+    let flown = weighs_reliability(scenario) && scenario.uncertainty.is_some();
     let ground = if flown { dem_ground(case).map_err(Box::new)? } else { None };
     let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
     let reliability = scenario.reliability(ground.as_ref());
@@ -193,6 +198,6 @@ pub(super) fn search(
         return Ok(Searched::of(graph::search(test, ends.0, ends.1, options, progress)?));
     };
     let (mut found, mut front) = search_most_reliable(test, ends.0, ends.1, options, &reliability, progress)?;
-    let success = journey.estimate(&mut found, &mut front, progress).map_err(Box::new)?;
-    Ok(Searched { success, reliable_paths: front, ..Searched::of(found) })
+    let Estimated { budget, to_go } = journey.estimate(&mut found, &mut front, progress).map_err(Box::new)?;
+    Ok(Searched { success: budget, to_go, reliable_paths: front, ..Searched::of(found) })
 }

@@ -1,6 +1,9 @@
 //! The path of fewest hops, then least effort.
 
-use std::io::{self, Write};
+use std::{
+    io::{self, Write},
+    sync::Arc,
+};
 
 use super::{
     Case, CaseError, Commands, Front, FrontWithoutErrors, JourneyError, Proof, SimulateError, dem_ground::dem_ground, front::front,
@@ -10,7 +13,7 @@ use super::{
 use crate::figure::{Caption, FigureError, FigureInput, FigureTitle, FrontFigure, FrontPoint, Picture, Success, draw, draw_front};
 use crate::{
     chain::Station,
-    graph,
+    graph::{self, CostToGo},
     ground::DemGround,
     hop::HopTest,
     path::{Execution, HopPath, TooManyHops, Violation},
@@ -106,6 +109,8 @@ pub struct Planned {
     pub answer: PlanAnswer,
     /// The warnings about the path.
     pub warnings: Vec<String>,
+    /// The costs by which trials replan, with as many hops as the scenario allows, where the choice of the path computed them.
+    pub(super) to_go: Option<Arc<CostToGo>>,
 }
 
 /// Plans the path of fewest hops, then least effort; proves bounds and flies the path again if that is wanted.
@@ -149,7 +154,7 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
         reliable_paths: ReliablePathRecord::rows(&searched.reliable_paths),
         front,
     };
-    Ok(Planned { case, test, ends, found: searched.found, path, answer, warnings })
+    Ok(Planned { case, test, ends, found: searched.found, path, answer, warnings, to_go: searched.to_go })
 }
 
 impl Planned {

@@ -130,7 +130,7 @@ impl Planned {
             reliable_paths: Vec::new(),
             front: None,
         };
-        Ok(Self { case, test, ends, found, path, answer, warnings })
+        Ok(Self { case, test, ends, found, path, answer, warnings, to_go: None })
     }
 }
 

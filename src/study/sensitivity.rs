@@ -35,7 +35,7 @@ pub(super) fn sensitivity(
     if errors.is_empty() {
         return Err(ExperimentError::NoErrors);
     }
-    let flyer = Flyer::new(planned, &planned.found, &[keys.policy], progress)?;
+    let flyer = Flyer::new(planned, &[keys.policy], progress)?;
     let options = TrialOptions { trajectories: 0, ..keys.options() };
     let flown = |errors: Uncertainty| -> Result<Vec<bool>, ExperimentError> {
         let mut reached = Reached::default();

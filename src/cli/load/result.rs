@@ -7,7 +7,7 @@ use chta::study::{PlanOptions, Planned, plan};
 use super::Loaded;
 use crate::cli::{Failure, args::SimulateArgs, inputs, progress::Progress, wrong_thing::Role};
 
-/// Reads back the path of a result, or plans where the input is none, or is to be planned anew.
+/// Reads back the path of a result. An input that is no result is planned, and a result where the options say so.
 pub(crate) fn plan_to_fly(args: &SimulateArgs, loaded: &Loaded, progress: &Progress) -> Result<Arc<Planned>, Failure> {
     let input = inputs::open(&args.journey.chain, Role::Chain)?;
     let name = input.given.display();

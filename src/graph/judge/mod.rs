@@ -106,7 +106,7 @@ pub(super) struct Judge {
 enum Trials {
     Slack,
     Chain(Box<HopTrials<ChainGround>>),
-    Map(Box<(HopTrials<DemGround>, DemGround)>),
+    Map(Box<HopTrials<DemGround>>),
 }
 
 /// A hop along a chain, as the judge sees it.
@@ -138,10 +138,7 @@ impl Judge {
                         let vertices = test.chain().geometry().vertices().len();
                         Trials::Chain(Box::new(HopTrials::new(&ground, &errors, of_takeoffs, vertices, SEARCHED_DRAWS)))
                     }
-                    Some(ground) => {
-                        let trials = HopTrials::new(ground.as_ref(), errors, of_takeoffs, 1, SEARCHED_DRAWS);
-                        Trials::Map(Box::new((trials, (**ground).clone())))
-                    }
+                    Some(ground) => Trials::Map(Box::new(HopTrials::new(ground.as_ref(), errors, of_takeoffs, 1, SEARCHED_DRAWS))),
                 };
                 (trials, *takeoffs, errors.position_sigma_m)
             }
@@ -228,7 +225,7 @@ impl Judge {
         Some(self.most_reliable(sight, lofts, |loft, enough| {
             let command = Command::of_arc(&Arc::new(sight, loft, self.test.gravity_m_s2()), heading, *to);
             let takeoff_sigma_m = [self.position_sigma_m; 2];
-            over.0.survival(&JudgedHop { from: *from, command, takeoff_sigma_m, goal: None, aims_at_rest: true }, enough)
+            over.survival(&JudgedHop { from: *from, command, takeoff_sigma_m, goal: None, aims_at_rest: true }, enough)
         }))
     }
 
@@ -266,7 +263,7 @@ impl Judge {
                 self.on_chain(planned, loft).map_or_else(Survival::default, |hop| trials.survival(&hop, enough))
             }
             Trials::Map(over) => {
-                self.on_map(&over.1, planned, loft).map_or_else(Survival::default, |hop| over.0.survival(&hop, enough))
+                self.on_map(over.ground(), planned, loft).map_or_else(Survival::default, |hop| over.survival(&hop, enough))
             }
         }
     }
@@ -275,7 +272,7 @@ impl Judge {
         match &self.trials {
             Trials::Slack => 0.0,
             Trials::Chain(trials) => self.on_chain(planned, loft).map_or(0.0, |hop| trials.failing_share_of_doubled(&hop)),
-            Trials::Map(over) => self.on_map(&over.1, planned, loft).map_or(0.0, |hop| over.0.failing_share_of_doubled(&hop)),
+            Trials::Map(over) => self.on_map(over.ground(), planned, loft).map_or(0.0, |hop| over.failing_share_of_doubled(&hop)),
         }
     }
 

@@ -15,7 +15,6 @@ use crate::{
 #[derive(Clone, Debug)]
 pub(crate) struct MapJudge {
     trials: HopTrials<DemGround>,
-    ground: DemGround,
     errors: Uncertainty,
     takeoff: TakeoffChoice,
 }
@@ -29,7 +28,7 @@ impl MapJudge {
 
     pub(crate) fn new(ground: &DemGround, errors: &Uncertainty, takeoff: TakeoffChoice) -> Self {
         let trials = HopTrials::new(ground, errors, errors.distribution, 1, SEARCHED_DRAWS);
-        Self { trials, ground: ground.clone(), errors: errors.clone(), takeoff }
+        Self { trials, errors: errors.clone(), takeoff }
     }
 
     /// The command of a hop from where the robot believes to be: by the choice of take-offs.
@@ -39,7 +38,7 @@ impl MapJudge {
         heading: Vector2<f64>,
         (sight, lofts): (LineOfSight, SlopeInterval),
     ) -> Command<MapPosition> {
-        let envelope = self.ground.envelope();
+        let envelope = self.trials.ground().envelope();
         let command = |loft| Command::of_arc(&Arc::new(sight, loft, envelope.gravity_m_s2()), heading, *to);
         if self.takeoff != TakeoffChoice::MostReliable {
             return command(envelope.loft(self.takeoff, sight, lofts));
@@ -62,7 +61,7 @@ impl MapJudge {
     ///
     /// At least [`EACH_HOP`](Self::EACH_HOP). Measured errors are left to the trials, which fly them.
     pub(crate) fn estimate(&self, post: Post, heading: Vector2<f64>, (sight, lofts): (LineOfSight, SlopeInterval)) -> f64 {
-        let envelope = self.ground.envelope();
+        let envelope = self.trials.ground().envelope();
         let arc = Arc::new(sight, envelope.loft(self.takeoff, sight, lofts), envelope.gravity_m_s2());
         let angle = |loft: f64| Angle::from_slope(sight.slope() + loft).radians();
         let flown = arc.takeoff_angle().radians();
@@ -70,7 +69,7 @@ impl MapJudge {
         let errors = &self.errors;
         let sigma = libm::hypot(errors.takeoff_angle_sigma.radians(), errors.takeoff_angle_bias_sigma.radians());
         let of_angle = inside(flown - angle(lofts.lower), sigma) + inside(angle(lofts.upper) - flown, sigma) - 1.0;
-        let limits = self.ground.hopper().limits();
+        let limits = self.trials.ground().hopper().limits();
         let of_speed = if limits.landing.brakes() {
             1.0
         } else {
@@ -80,7 +79,7 @@ impl MapJudge {
             let sigma_m_s = libm::hypot(fraction * takeoff_m_s, errors.takeoff_speed_sigma_m_s);
             inside((limits.landing_speed_max_m_s - landing_m_s) * landing_m_s, sigma_m_s * takeoff_m_s)
         };
-        let of_ground = 1.0 - self.ground.refusing_share(post, heading, arc.landing_slope());
+        let of_ground = 1.0 - self.trials.ground().refusing_share(post, heading, arc.landing_slope());
         Self::EACH_HOP - libm::log((of_angle * of_speed * of_ground).clamp(LEAST_SUCCESS, 1.0))
     }
 }

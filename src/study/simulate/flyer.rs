@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::SimulateError;
 use crate::{
-    graph::{self, CostToGo},
+    graph::CostToGo,
     ground::DemGround,
     path::HopPath,
     progress::Progress,
@@ -21,16 +21,11 @@ pub(in crate::study) struct Flyer<'a> {
 }
 
 impl<'a> Flyer<'a> {
-    /// Reads the raster, and computes the replanning policy once.
-    pub(in crate::study) fn new(
-        planned: &'a Planned,
-        found: &graph::Answer,
-        policies: &[Policy],
-        progress: &dyn Progress,
-    ) -> Result<Self, SimulateError> {
+    /// Takes raster and replanning policy from the plan, as far as it has them.
+    pub(in crate::study) fn new(planned: &'a Planned, policies: &[Policy], progress: &dyn Progress) -> Result<Self, SimulateError> {
         let mut flyer = Self { planned, ground: dem_ground(&planned.case)?, to_go: None };
         if policies.contains(&Policy::Replan) {
-            flyer.to_go = Some(Arc::new(flyer.journey().costs_to_go(found, progress)?));
+            flyer.to_go = Some(flyer.journey().costs_of_path(&planned.found, planned.to_go.as_ref(), progress)?);
         }
         Ok(flyer)
     }

@@ -147,7 +147,7 @@ impl Trials {
     pub fn tally(&self, numbers: Range<u64>, progress: &dyn Progress) -> Result<Option<Tally>, SimulateError> {
         let Some(path) = &self.planned.path else { return Ok(None) };
         let policy = self.planned.case.scenario.uncertainty.clone().unwrap_or_default().policy;
-        let simulation = Flyer::new(&self.planned, &self.planned.found, &[policy], progress)?.simulation(path)?;
+        let simulation = Flyer::new(&self.planned, &[policy], progress)?.simulation(path)?;
         let options = TrialOptions {
             policy,
             first_trial: numbers.start,
@@ -188,7 +188,7 @@ impl Trials {
             let answer = answer.requiring(success_min);
             return Ok(Simulated { planned, summaries: Vec::new(), tallies: Vec::new(), answer, warnings, ground: None });
         };
-        let flyer = Flyer::new(&planned, &planned.found, &policies, progress)?;
+        let flyer = Flyer::new(&planned, &policies, progress)?;
         let simulation = flyer.simulation(path)?;
         let (mut summaries, mut tallies) = (Vec::new(), Vec::new());
         for policy in policies {
