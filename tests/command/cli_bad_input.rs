@@ -305,7 +305,9 @@ fn a_full_disk_is_reported_for_standard_output_and_for_files() {
 fn a_closed_pipe_is_no_error_and_keeps_the_answer() {
     let desk = Desk::with_dem();
     let no: &[&str] = &["hop", "scenario.toml", "--to", "10", "--set", "hopper.takeoff_speed_max_m_s=1"];
-    for (args, status) in WRITING.into_iter().map(|args| (args, 0)).chain([(no, 1)]) {
+    // More than fits into one buffer, so that the pipe is found closed while trials are flown.
+    let many: &[&str] = &["simulate", "scenario.toml", "--trials", "3000", "-o", "-", "--quiet"];
+    for (args, status) in WRITING.into_iter().map(|args| (args, 0)).chain([(no, 1), (many, 0)]) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_chta"));
         command.current_dir(desk.path()).args(args).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
