@@ -39,7 +39,8 @@ impl SuccessEstimate {
 pub struct ReliablePathRecord {
     /// The number of hops.
     pub hops: u64,
-    /// The share of 512 fixed trials that reach the goal; null without errors to fly.
+    /// The share of 512 fixed trials that reach the goal; null without errors to fly, and for
+    /// paths that are not flown: nine of a front are where no budget of success is to be met.
     pub estimated_success: Option<f64>,
     /// The effort of the path, in the unit of the search's effort.
     pub effort: f64,
@@ -64,6 +65,13 @@ pub fn reliable_paths_text(rows: &[ReliablePathRecord], hops: Option<u64>) -> St
         let estimate = row.estimated_success.map_or("-".to_owned(), |share| format!("{share:.4}"));
         let chosen = if hops == Some(row.hops) { "  <- chosen" } else { "" };
         sheet.line(format_args!("{:>6}{estimate:>20}{:>12.4}{chosen}", row.hops, row.effort));
+    }
+    let flown = rows.iter().filter(|row| row.estimated_success.is_some()).count();
+    if flown > 0 && flown < rows.len() {
+        sheet.line(format_args!(
+            "{flown} of {} paths were flown in trials: one with fewer hops may be as reliable as the one chosen",
+            rows.len()
+        ));
     }
     sheet.into_text()
 }

@@ -66,8 +66,8 @@ pub(super) fn front(
         let reliability = scenario.reliability_with(scenario.risk_extra_hops_max, ground.as_ref());
         let reliability = reliability.flown_under(journey.whole.as_ref());
         paths = most_reliable_paths(test, &nodes, &scenario.search, &reliability, progress)?;
-        journey.fly_front(found, &mut paths, progress).map_err(Box::new)?;
     }
+    journey.fly_front(found, &mut paths, usize::MAX, progress).map_err(Box::new)?;
     let row = |path: &ReliablePath| {
         let success_estimated = path.success?;
         let hops = journey.generated(path).ok()?;
@@ -191,8 +191,9 @@ impl FlownJourney<'_> {
         let Outcome::Path { legs, .. } = &found.outcome else { return Ok(Estimated::default()) };
         // Who is at the goal already is there for certain.
         let stays = legs.is_empty();
-        let to_go = self.fly_front(found, front, progress)?;
         let least = self.scenario.budget.estimated_success_min;
+        // A budget is not refused for a path that was not flown.
+        let to_go = self.fly_front(found, front, if least.is_some() { usize::MAX } else { FLOWN_MAX }, progress)?;
         let within = least.and_then(|least| path_within_budget(front, least));
         let preferred = within.map(|(path, _)| path).or_else(|| preferred_path(front));
         let preferred = preferred.and_then(|preferred| front.get(preferred));
@@ -205,22 +206,24 @@ impl FlownJourney<'_> {
         Ok(Estimated { budget, to_go })
     }
 
-    /// Estimates the success of the paths of a front.
+    /// Estimates the success of at most so many paths of a front, as far as it is not known.
     ///
     /// A robot that replans and may take more hops is another robot: every path is estimated with the hops that it has.
     ///
     /// # Returns
-    /// The costs by which it replans, with as many hops as the scenario allows; `None` open loop.
+    /// The costs by which it replans, with as many hops as the scenario allows; `None` open loop, and if no path is flown.
     pub(super) fn fly_front(
         &self,
         found: &graph::Answer,
         front: &mut [ReliablePath],
+        most: usize,
         progress: &dyn Progress,
     ) -> Result<Option<Arc<CostToGo>>, SimulateError> {
-        let Some(keys) = self.scenario.uncertainty.as_ref().filter(|_| !front.is_empty()) else { return Ok(None) };
+        let unknown: Vec<usize> = flown_of(front.len(), most).filter(|&number| front[number].success.is_none()).collect();
+        let Some(keys) = self.scenario.uncertainty.as_ref().filter(|_| !unknown.is_empty()) else { return Ok(None) };
         let replans = keys.policy == Policy::Replan;
         let all = replans.then(|| self.costs_to_go(found, progress)).transpose()?.map(Arc::new);
-        for number in flown_of(front.len()) {
+        for number in unknown {
             let path = &mut front[number];
             // A path of too many hops to list, or without commands of the machine, is not flown.
             let Ok(hops) = self.generated(path) else { continue };
@@ -235,11 +238,11 @@ impl FlownJourney<'_> {
     }
 }
 
-/// The most paths of a front that are flown in trials: a long journey has dozens, and each of them costs 512 trials.
+/// The most paths of a front that are flown in trials without a budget: a long journey has dozens, and each of them costs 512 trials.
 const FLOWN_MAX: usize = 9;
 
 /// Which of the paths of a front are flown: all of a short one, else evenly spaced ones with the first and the last.
-fn flown_of(count: usize) -> impl Iterator<Item = usize> {
-    let flown = count.min(FLOWN_MAX);
+fn flown_of(count: usize, most: usize) -> impl Iterator<Item = usize> {
+    let flown = count.min(most);
     (0..flown).map(move |i| if flown < 2 { i } else { i * (count - 1) / (flown - 1) })
 }
