@@ -45,4 +45,8 @@ pub use reliability::{
 };
 pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchError, SearchOptions, search, search_pairs};
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};
-pub(crate) use {judge::MapJudge, reachable::reachable_nodes, search::search_one};
+pub(crate) use {
+    judge::{Judge, Judged, MapJudge},
+    reachable::reachable_nodes,
+    search::search_one,
+};

@@ -75,11 +75,11 @@ impl RiskModel {
 
 /// The risk of an edge.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Judged {
+pub(crate) struct Judged {
     /// `-ln` of the estimated probability to succeed, and for flown draws a share of what fails under doubled errors.
-    pub(super) weight: f64,
+    pub(crate) weight: f64,
     /// The loft of the most reliable command of a single hop, where it was to be chosen.
-    pub(super) loft: Option<f64>,
+    pub(crate) loft: Option<f64>,
     /// Mean square distance of the places of rest from the planned landing, m^2.
     pub(super) spread_m2: [f64; 2],
 }
@@ -91,7 +91,7 @@ impl Judged {
 
 /// Judges the edges of a graph.
 #[derive(Clone, Debug)]
-pub(super) struct Judge {
+pub(crate) struct Judge {
     test: HopTest,
     choice: TakeoffChoice,
     split: Split,
@@ -121,7 +121,7 @@ struct Planned {
 }
 
 impl Judge {
-    pub(super) fn new(test: &HopTest, options: &SearchOptions, model: &RiskModel, tolerance_m: Option<f64>) -> Self {
+    pub(crate) fn new(test: &HopTest, options: &SearchOptions, model: &RiskModel, tolerance_m: Option<f64>) -> Self {
         let (trials, takeoffs, position_sigma_m) = match model {
             RiskModel::Slack => (Trials::Slack, TakeoffScatter::OfPosition, 0.0),
             RiskModel::Flown { errors, takeoffs, over, whole } => {
@@ -147,7 +147,7 @@ impl Judge {
     }
 
     /// Mean square distance of a take-off from its plan after a hop with this spread of its places of rest, m^2.
-    pub(super) fn takeoff_m2(&self, spread_m2: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn takeoff_m2(&self, spread_m2: [f64; 2]) -> [f64; 2] {
         match self.takeoffs {
             TakeoffScatter::OfPosition => [self.position_sigma_m * self.position_sigma_m; 2],
             TakeoffScatter::OfLandings => spread_m2,
@@ -172,7 +172,7 @@ impl Judge {
 
     /// The risk of an edge between two nodes, for a take-off that scatters about its node. Draws end once the weight cannot be below
     /// `below`; it is then that or more.
-    pub(super) fn edge(&self, graph: &HopGraph, (from, to): (usize, usize), takeoff_m2: [f64; 2], below: f64) -> Judged {
+    pub(crate) fn edge(&self, graph: &HopGraph, (from, to): (usize, usize), takeoff_m2: [f64; 2], below: f64) -> Judged {
         let nodes = graph.nodes();
         let (takeoff, landing) = (*nodes.station(NodeId(from)), *nodes.station(NodeId(to)));
         let is_last = nodes.goal() == NodeId(to);

@@ -1,0 +1,196 @@
+//! What a path takes: amounts that add up over its hops, and one that is the greatest of them.
+
+use crate::{
+    ballistics::{Arc, delta_v_m_s},
+    world::HopperLimits,
+};
+
+/// An amount of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Amount {
+    /// The number of hops.
+    Hops,
+    /// The sum of take-off speeds, m/s.
+    TakeoffSpeed,
+    /// The delta-v, m/s: take-offs, brakes, overhead.
+    DeltaV,
+    /// The energy from the store per unit mass, J/kg.
+    Energy,
+    /// The sum of flight times, s.
+    FlightTime,
+    /// From the first preparation to the last landing, s: flights, bounces, preparation, settling.
+    MissionTime,
+    /// Horizontal distance over the ground, m.
+    Distance,
+    /// The length of the arcs flown, m.
+    ArcLength,
+    /// The sum of the weights by which reliability ranks hops.
+    Risk,
+    /// The greatest take-off speed, m/s.
+    PeakSpeed,
+}
+
+impl Amount {
+    /// The number of amounts.
+    pub const COUNT: usize = 10;
+
+    /// All amounts.
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::Hops,
+        Self::TakeoffSpeed,
+        Self::DeltaV,
+        Self::Energy,
+        Self::FlightTime,
+        Self::MissionTime,
+        Self::Distance,
+        Self::ArcLength,
+        Self::Risk,
+        Self::PeakSpeed,
+    ];
+
+    /// The name in scenarios and results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Hops => "hops",
+            Self::TakeoffSpeed => "takeoff-speed",
+            Self::DeltaV => "delta-v",
+            Self::Energy => "energy",
+            Self::FlightTime => "flight-time",
+            Self::MissionTime => "mission-time",
+            Self::Distance => "distance",
+            Self::ArcLength => "arc-length",
+            Self::Risk => "risk",
+            Self::PeakSpeed => "peak-speed",
+        }
+    }
+
+    /// The symbol of its unit; empty for a count and for risk.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Hops | Self::Risk => "",
+            Self::TakeoffSpeed | Self::DeltaV | Self::PeakSpeed => "m/s",
+            Self::Energy => "J/kg",
+            Self::FlightTime | Self::MissionTime => "s",
+            Self::Distance | Self::ArcLength => "m",
+        }
+    }
+
+    /// The amount of a whole path in words.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Hops => "number of hops",
+            Self::TakeoffSpeed => "sum of take-off speeds",
+            Self::DeltaV => "delta-v",
+            Self::Energy => "energy per unit mass",
+            Self::FlightTime => "flight time",
+            Self::MissionTime => "mission time",
+            Self::Distance => "horizontal distance",
+            Self::ArcLength => "length of the arcs",
+            Self::Risk => "risk",
+            Self::PeakSpeed => "greatest take-off speed",
+        }
+    }
+
+    /// Whether it adds up over hops; else the greatest of them counts.
+    pub const fn adds_up(self) -> bool {
+        !matches!(self, Self::PeakSpeed)
+    }
+
+    /// Whether it is the same for every arc between two places.
+    pub const fn is_of_places(self) -> bool {
+        matches!(self, Self::Hops | Self::Distance)
+    }
+
+    /// The amount of two parts of a path together.
+    #[inline]
+    pub const fn join(self, first: f64, second: f64) -> f64 {
+        if self.adds_up() { first + second } else { first.max(second) }
+    }
+
+    const fn index(self) -> usize {
+        self as usize
+    }
+}
+
+crate::quantity::by_name!(Amount, Amount::ALL);
+
+/// All amounts of a hop, of a leg or of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Amounts([f64; Amount::COUNT]);
+
+impl Amounts {
+    /// Those of a path without hops.
+    pub const NONE: Self = Self([0.0; Amount::COUNT]);
+
+    /// Those of one hop along an arc, for a hopper. Risk is left at 0, and bounces are not counted.
+    ///
+    /// ```text
+    ///     hops = 1,   energy = (v_t^2 / 2) / efficiency + preparation energy / mass,
+    ///     mission time = settling (not before the first hop) + preparation + flight
+    /// ```
+    ///
+    /// # Arguments
+    /// `is_first`: whether the mission begins with it, so that the hopper need not settle before.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{ballistics::{Arc, LineOfSight}, planner::{Amount, Amounts}, world::HopperLimits};
+    /// // 45 degrees over 10 m of flat ground at 10 m/s^2: 10 m/s, and sqrt(2) s of flight.
+    /// let arc = Arc::new(LineOfSight::new(10.0, 0.0), 1.0, 10.0);
+    /// let limits = HopperLimits { preparation_time_s: Some(3.0), settling_time_s: Some(4.0), ..HopperLimits::with_speeds(20.0, 20.0) };
+    /// let [first, later] = [true, false].map(|is_first| Amounts::of_arc(&arc, &limits, is_first));
+    /// assert!((first.of(Amount::Energy) - 50.0).abs() < 1e-12);
+    /// assert!((first.of(Amount::MissionTime) - (3.0 + 2f64.sqrt())).abs() < 1e-12);
+    /// assert!((later.of(Amount::MissionTime) - (7.0 + 2f64.sqrt())).abs() < 1e-12);
+    /// ```
+    pub fn of_arc(arc: &Arc, limits: &HopperLimits, is_first: bool) -> Self {
+        let speed_m_s = arc.takeoff_speed_m_s();
+        let flight_s = arc.flight_time_s();
+        let settling_s = if is_first { 0.0 } else { limits.settling_s().unwrap_or(0.0) };
+        Self::NONE
+            .with(Amount::Hops, 1.0)
+            .with(Amount::TakeoffSpeed, speed_m_s)
+            .with(Amount::DeltaV, delta_v_m_s(arc, limits))
+            .with(Amount::Energy, limits.store_energy_j_kg(0.5 * speed_m_s * speed_m_s, 1))
+            .with(Amount::FlightTime, flight_s)
+            .with(Amount::MissionTime, settling_s + limits.preparation_time_s.unwrap_or(0.0) + flight_s)
+            .with(Amount::Distance, arc.line_of_sight().run_m())
+            .with(Amount::ArcLength, arc.length_m())
+            .with(Amount::PeakSpeed, speed_m_s)
+    }
+
+    /// One of them.
+    #[inline]
+    pub const fn of(&self, amount: Amount) -> f64 {
+        self.0[amount.index()]
+    }
+
+    /// The same with another value of one of them.
+    #[must_use]
+    #[inline]
+    pub const fn with(mut self, amount: Amount, value: f64) -> Self {
+        self.0[amount.index()] = value;
+        self
+    }
+
+    /// Those of a path of which these are the first part.
+    #[must_use]
+    pub fn then(&self, next: &Self) -> Self {
+        let mut both = *self;
+        for amount in Amount::ALL {
+            both.0[amount.index()] = amount.join(self.of(amount), next.of(amount));
+        }
+        both
+    }
+
+    /// Those of so many equal hops; of none at all, nothing.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "hop counts stay below 2^53")]
+    pub fn times(&self, hops: u64) -> Self {
+        let mut all = *self;
+        for amount in Amount::ALL.into_iter().filter(|amount| hops == 0 || amount.adds_up()) {
+            all.0[amount.index()] *= hops as f64;
+        }
+        all
+    }
+}

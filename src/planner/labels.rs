@@ -1,0 +1,223 @@
+//! Labels of nodes: what the paths to a node take, as far as the search compares it.
+
+use std::cmp::Ordering;
+
+use super::{Amount, Amounts, Budgets, Objective};
+
+/// No label, or the end of a list.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// The amounts that a search follows: those of the objective, then those with a budget only.
+#[derive(Clone, Debug)]
+pub(super) struct Tracked {
+    amounts: Vec<Amount>,
+    /// How many of them are the objective.
+    objective: usize,
+    /// Those that a label has to have no more of, each by itself, to dominate another one.
+    compared: Vec<usize>,
+    /// The greatest total of each; infinite without one.
+    allowed: Vec<f64>,
+}
+
+impl Tracked {
+    /// For an objective within budgets.
+    pub(super) fn new(objective: &Objective, budgets: &Budgets) -> Self {
+        let mut amounts = objective.amounts().to_vec();
+        amounts.extend(budgets.all().map(|(amount, _)| amount).filter(|amount| !objective.amounts().contains(amount)));
+        let allowed: Vec<f64> = amounts.iter().map(|amount| budgets.allowed(*amount)).collect();
+        // A label that is no worse by the objective has no more of its first amount; a greatest speed within its budget stays there.
+        let compared = (1..amounts.len()).filter(|&i| allowed[i].is_finite() && amounts[i].adds_up()).collect();
+        Self { objective: objective.amounts().len(), amounts, compared, allowed }
+    }
+
+    /// For all best totals of one amount against another.
+    pub(super) fn front(first: Amount, second: Amount, budgets: &Budgets) -> Self {
+        let mut tracked = Self::new(&Objective::of(first), budgets);
+        let at = tracked.amounts.iter().position(|amount| *amount == second).unwrap_or_else(|| {
+            tracked.amounts.push(second);
+            tracked.allowed.push(f64::INFINITY);
+            tracked.amounts.len() - 1
+        });
+        if !tracked.compared.contains(&at) {
+            tracked.compared.push(at);
+        }
+        tracked
+    }
+
+    /// How many amounts they are.
+    const fn len(&self) -> usize {
+        self.amounts.len()
+    }
+}
+
+/// Where a label comes from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Origin {
+    pub(super) node: u32,
+    /// The label before it; [`NONE`] at the start.
+    pub(super) before: u32,
+    /// The command of the last leg.
+    pub(super) command: u32,
+}
+
+/// All labels of a search. Those of one node are linked; of them, none dominates another.
+#[derive(Debug)]
+pub(super) struct Labels {
+    pub(super) tracked: Tracked,
+    /// Of each label as many as are tracked.
+    totals: Vec<f64>,
+    origins: Vec<Origin>,
+    next: Vec<u32>,
+    /// Whether a label still counts.
+    alive: Vec<bool>,
+    /// The first label of each node.
+    heads: Vec<u32>,
+    most: usize,
+    most_of_node: usize,
+    /// Whether labels were left out because there were too many.
+    pub(super) capped: bool,
+}
+
+impl Labels {
+    /// No labels of any node.
+    pub(super) fn new(tracked: Tracked, nodes: usize, most: usize, most_of_node: usize) -> Self {
+        Self {
+            tracked,
+            totals: Vec::new(),
+            origins: Vec::new(),
+            next: Vec::new(),
+            alive: Vec::new(),
+            heads: vec![NONE; nodes],
+            // Labels are numbered in 32 bits.
+            most: most.min(NONE as usize - 1),
+            most_of_node,
+            capped: false,
+        }
+    }
+
+    /// How many labels were made.
+    pub(super) const fn len(&self) -> usize {
+        self.origins.len()
+    }
+
+    pub(super) fn origin(&self, label: u32) -> Origin {
+        self.origins[label as usize]
+    }
+
+    pub(super) fn is_alive(&self, label: u32) -> bool {
+        self.alive[label as usize]
+    }
+
+    /// The tracked amounts of a label.
+    pub(super) fn totals(&self, label: u32) -> &[f64] {
+        let width = self.tracked.len();
+        &self.totals[label as usize * width..][..width]
+    }
+
+    /// The labels of a node that count.
+    pub(super) fn of_node(&self, node: usize) -> impl Iterator<Item = u32> + '_ {
+        std::iter::successors(Some(self.heads[node]), |label| self.next.get(*label as usize).copied())
+            .take_while(|label| *label != NONE)
+    }
+
+    /// Adds a label to a node unless another one of the node dominates it, and drops those that it dominates.
+    ///
+    /// # Returns
+    /// Its number, if it was added.
+    pub(super) fn offer(&mut self, totals: &[f64], origin: Origin) -> Option<u32> {
+        let node = origin.node as usize;
+        let mut count = 0;
+        for label in self.of_node(node) {
+            if dominates(&self.tracked, self.totals(label), totals) {
+                return None;
+            }
+            count += 1;
+        }
+        self.drop_dominated(node, totals, &mut count);
+        if count >= self.most_of_node || self.len() >= self.most {
+            self.capped = true;
+            return None;
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "at most as many labels as 32 bits number")]
+        let label = self.len() as u32;
+        self.totals.extend_from_slice(totals);
+        self.origins.push(origin);
+        self.next.push(self.heads[node]);
+        self.alive.push(true);
+        self.heads[node] = label;
+        Some(label)
+    }
+
+    fn drop_dominated(&mut self, node: usize, totals: &[f64], count: &mut usize) {
+        let (mut before, mut label) = (NONE, self.heads[node]);
+        while label != NONE {
+            let next = self.next[label as usize];
+            if dominates(&self.tracked, totals, self.totals(label)) {
+                self.alive[label as usize] = false;
+                match self.next.get_mut(before as usize) {
+                    Some(link) => *link = next,
+                    None => self.heads[node] = next,
+                }
+                *count -= 1;
+            } else {
+                before = label;
+            }
+            label = next;
+        }
+    }
+
+    /// Whether a label of a node dominates these amounts.
+    pub(super) fn node_dominates(&self, node: usize, totals: &[f64]) -> bool {
+        self.of_node(node).any(|label| dominates(&self.tracked, self.totals(label), totals))
+    }
+
+    /// The tracked amounts of a path with one more leg.
+    pub(super) fn extended(&self, label: u32, leg: &Amounts, out: &mut Vec<f64>) {
+        out.clear();
+        let joined = |(amount, total): (&Amount, &f64)| amount.join(*total, leg.of(*amount));
+        out.extend(self.tracked.amounts.iter().zip(self.totals(label)).map(joined));
+    }
+}
+
+impl Tracked {
+    /// What whole paths take at least that begin with these amounts; `None` if that is more than a budget.
+    ///
+    /// At a goal, and where nothing is left to come, these amounts themselves.
+    pub(super) fn with_rest(&self, totals: &[f64], rest: &Amounts, out: &mut Vec<f64>) -> bool {
+        // A sum is rounded: what is left out here keeps it from exceeding that of a path.
+        const ROUNDING: f64 = 1.0 - 8.0 * f64::EPSILON;
+        out.clear();
+        for ((amount, total), allowed) in self.amounts.iter().zip(totals).zip(&self.allowed) {
+            let rest = rest.of(*amount);
+            let whole = if rest > 0.0 { (amount.join(*total, rest) * ROUNDING).max(*total) } else { *total };
+            if whole > *allowed {
+                return false;
+            }
+            out.push(whole);
+        }
+        true
+    }
+
+    /// Amounts of no path.
+    pub(super) fn zeros(&self) -> Vec<f64> {
+        vec![0.0; self.len()]
+    }
+
+    /// What the queue compares: the objective, filled up with zeros.
+    pub(super) fn key(&self, totals: &[f64]) -> [f64; Objective::MOST] {
+        let mut key = [0.0; Objective::MOST];
+        key.iter_mut().zip(&totals[..self.objective]).for_each(|(key, total)| *key = *total);
+        key
+    }
+}
+
+/// Whether a path with the first amounts is no worse than one with the second, however both go on.
+fn dominates(tracked: &Tracked, first: &[f64], second: &[f64]) -> bool {
+    by_objective(&first[..tracked.objective], &second[..tracked.objective]) != Ordering::Greater
+        && tracked.compared.iter().all(|&i| first[i] <= second[i])
+}
+
+/// The order by the objective.
+pub(super) fn by_objective(first: &[f64], second: &[f64]) -> Ordering {
+    first.iter().zip(second).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+}

@@ -1,0 +1,235 @@
+//! Label-setting search: the best path by an objective, within budgets.
+//!
+//! Without a budget on another amount it is Dijkstra's algorithm in lexicographic order; with a lower bound on what is left to the goal it
+//! is A*. With one, a node keeps every label that another one does not dominate (Martins 1984): no better by the objective, and no less of
+//! any amount with a budget. The first label of the goal that is taken from the queue is the best.
+
+use std::{cmp::Ordering, collections::BinaryHeap};
+
+use super::{
+    Amount, Amounts, Budgets, Objective,
+    labels::{Labels, NONE, Origin, Tracked, by_objective},
+};
+use crate::progress::Cancelled;
+
+/// Nodes, and the legs out of each with what they take. Edges are visited and never stored, so that a graph of a million nodes may have
+/// them implicitly.
+pub trait LegGraph {
+    /// The number of nodes; they are numbered from 0.
+    fn nodes(&self) -> usize;
+
+    /// Visits every leg out of a node, once for each of its distinct commands. The order of visits decides between equals.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn successors(&self, node: usize, visit: &mut dyn FnMut(&Successor)) -> Result<(), Cancelled>;
+
+    /// What no path from a node to the goal takes less of: for every amount no more than a leg and what is left after it. Zeros are such
+    /// bounds.
+    fn least_to_goal(&self, node: usize) -> Amounts;
+}
+
+/// A leg with one of its commands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Successor {
+    /// The node it leads to.
+    pub node: usize,
+    /// The command: a number that the graph knows.
+    pub command: u32,
+    /// What it takes, each at least 0.
+    pub amounts: Amounts,
+}
+
+/// How many labels a search keeps at most; one that leaves out others says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LabelCap {
+    /// Of one node.
+    pub of_node: usize,
+    /// In all, those no longer needed included: some 40 bytes each.
+    pub in_all: usize,
+}
+
+impl Default for LabelCap {
+    /// A node of a plan has hundreds at most; ten million labels are some 400 MB.
+    fn default() -> Self {
+        Self { of_node: 2_000, in_all: 10_000_000 }
+    }
+}
+
+/// One leg of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PathStep {
+    /// Where it begins.
+    pub from: usize,
+    /// Where it ends.
+    pub to: usize,
+    /// Its command.
+    pub command: u32,
+}
+
+/// A path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundPath {
+    /// Its legs from the start to the goal; none if they are the same node.
+    pub steps: Vec<PathStep>,
+    /// What it takes: the sums over its legs from the start.
+    pub totals: Amounts,
+}
+
+/// The result of a search.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SearchResult {
+    /// The best path; `None` if there is none within the budgets.
+    pub path: Option<FoundPath>,
+    /// Whether labels were left out because there were too many: the path may then not be the best, and `None` proves nothing.
+    pub capped: bool,
+    /// How many labels were made.
+    pub labels: usize,
+}
+
+/// A label that waits, the best first; of equals the one of the lower node, then the older one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Waiting {
+    key: [f64; Objective::MOST],
+    node: u32,
+    label: u32,
+}
+
+impl Eq for Waiting {}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Waiting {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let best_first = by_objective(&self.key, &other.key).then(self.node.cmp(&other.node)).then(self.label.cmp(&other.label));
+        best_first.reverse()
+    }
+}
+
+/// The best path from a start to a goal by an objective, within budgets.
+///
+/// # Errors
+/// [`Cancelled`], from the graph.
+///
+/// # Complexity
+/// Without a budget on another amount one visit of the legs of every node that may lie on a better path; with one, a visit for every label.
+pub fn search(
+    graph: &impl LegGraph,
+    (start, goal): (usize, usize),
+    objective: &Objective,
+    budgets: &Budgets,
+    cap: LabelCap,
+) -> Result<SearchResult, Cancelled> {
+    let mut run = Run::new(graph, (start, goal), Tracked::new(objective, budgets), cap);
+    let best = run.until(true)?;
+    let path = best.map(|label| run.path(label)).transpose()?;
+    Ok(SearchResult { path, capped: run.labels.capped, labels: run.labels.len() })
+}
+
+/// One search on its way.
+pub(super) struct Run<'g, G> {
+    graph: &'g G,
+    start: usize,
+    goal: usize,
+    pub(super) labels: Labels,
+    queue: BinaryHeap<Waiting>,
+}
+
+impl<'g, G: LegGraph> Run<'g, G> {
+    pub(super) fn new(graph: &'g G, (start, goal): (usize, usize), tracked: Tracked, cap: LabelCap) -> Self {
+        let zeros = tracked.zeros();
+        let mut labels = Labels::new(tracked, graph.nodes(), cap.in_all.max(1), cap.of_node.max(1));
+        let mut queue = BinaryHeap::new();
+        let node = number(start);
+        let mut whole = Vec::new();
+        if labels.tracked.with_rest(&zeros, &graph.least_to_goal(start), &mut whole)
+            && let Some(label) = labels.offer(&zeros, Origin { node, before: NONE, command: 0 })
+        {
+            queue.push(Waiting { key: labels.tracked.key(&whole), node, label });
+        }
+        Self { graph, start, goal, labels, queue }
+    }
+
+    /// Settles labels until the best one of the goal, or until none waits.
+    pub(super) fn until(&mut self, first_is_enough: bool) -> Result<Option<u32>, Cancelled> {
+        let (mut totals, mut whole) = (Vec::new(), Vec::new());
+        while let Some(Waiting { node, label, .. }) = self.queue.pop() {
+            if !self.labels.is_alive(label) {
+                continue;
+            }
+            let node = node as usize;
+            if node == self.goal {
+                if first_is_enough {
+                    return Ok(Some(label));
+                }
+                continue;
+            }
+            let Self { graph, goal, labels, queue, .. } = self;
+            graph.successors(node, &mut |leg| {
+                labels.extended(label, &leg.amounts, &mut totals);
+                if !labels.tracked.with_rest(&totals, &graph.least_to_goal(leg.node), &mut whole) {
+                    return;
+                }
+                // A path that takes at least as much of everything as one that is known.
+                if labels.node_dominates(*goal, &whole) {
+                    return;
+                }
+                let origin = Origin { node: number(leg.node), before: label, command: leg.command };
+                if let Some(label) = labels.offer(&totals, origin) {
+                    queue.push(Waiting { key: labels.tracked.key(&whole), node: origin.node, label });
+                }
+            })?;
+        }
+        Ok(None)
+    }
+
+    /// The labels of the goal.
+    pub(super) fn at_goal(&self) -> Vec<u32> {
+        self.labels.of_node(self.goal).collect()
+    }
+
+    /// The path that ends with a label.
+    pub(super) fn path(&self, label: u32) -> Result<FoundPath, Cancelled> {
+        let mut steps = Vec::new();
+        let mut at = self.labels.origin(label);
+        while at.before != NONE {
+            let before = self.labels.origin(at.before);
+            steps.push(PathStep { from: before.node as usize, to: at.node as usize, command: at.command });
+            at = before;
+        }
+        debug_assert_eq!(at.node as usize, self.start, "a path begins at the start");
+        steps.reverse();
+        let mut totals = Amounts::NONE;
+        for step in &steps {
+            let mut amounts = Amounts::NONE;
+            self.graph.successors(step.from, &mut |leg| {
+                if leg.node == step.to && leg.command == step.command {
+                    amounts = leg.amounts;
+                }
+            })?;
+            totals = totals.then(&amounts);
+        }
+        Ok(FoundPath { steps, totals })
+    }
+}
+
+/// The number of a node in a label.
+#[expect(clippy::cast_possible_truncation, reason = "a graph has at most as many nodes as 32 bits number")]
+const fn number(node: usize) -> u32 {
+    node as u32
+}
+
+/// The least total of an amount over all paths, and whether labels were left out; `None` if there is no path.
+pub(super) fn least_total(
+    graph: &impl LegGraph,
+    ends: (usize, usize),
+    amount: Amount,
+    cap: LabelCap,
+) -> Result<Option<f64>, Cancelled> {
+    let found = search(graph, ends, &Objective::of(amount), &Budgets::NONE, cap)?;
+    Ok(found.path.map(|path| path.totals.of(amount)))
+}
