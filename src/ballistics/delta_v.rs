@@ -77,3 +77,21 @@ pub fn propellant_kg(mass_kg: f64, delta_v_m_s: f64, isp_s: f64) -> f64 {
     // The difference of two nearly equal masses would lose digits.
     -mass_kg * libm::expm1(-delta_v_m_s / (isp_s * STANDARD_GRAVITY_M_S2))
 }
+
+/// The delta-v of an amount of propellant, m/s: [`propellant_kg`] the other way round.
+///
+/// ```text
+///     dv = -Isp g0 ln(1 - (m_0 - m_1) / m_0)
+/// ```
+///
+/// # Arguments
+/// `mass_kg`: the mass before, with all propellant; `propellant_kg`: less than it; `isp_s`: the specific impulse.
+///
+/// # Examples
+/// ```
+/// use chta::ballistics::{delta_v_of_propellant_m_s, propellant_kg};
+/// assert!((propellant_kg(80.0, delta_v_of_propellant_m_s(80.0, 12.0, 220.0), 220.0) - 12.0).abs() < 1e-12);
+/// ```
+pub fn delta_v_of_propellant_m_s(mass_kg: f64, propellant_kg: f64, isp_s: f64) -> f64 {
+    -isp_s * STANDARD_GRAVITY_M_S2 * libm::log1p(-propellant_kg / mass_kg)
+}

@@ -43,7 +43,7 @@ pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
 pub use bounce::{LevelBounces, bounced, level_bounces};
 pub use choice::{TakeoffChoice, loft_at_share};
 pub use commands::{TakeoffSpeeds, TakeoffWindow};
-pub use delta_v::{STANDARD_GRAVITY_M_S2, delta_v_m_s, delta_v_of_m_s, propellant_kg};
+pub use delta_v::{STANDARD_GRAVITY_M_S2, delta_v_m_s, delta_v_of_m_s, delta_v_of_propellant_m_s, propellant_kg};
 pub use flight_envelope::{ContactLimits, FlightEnvelope};
 pub use greatest_reach::{landing_reach_m, takeoff_reach_m};
 pub use line_of_sight::LineOfSight;

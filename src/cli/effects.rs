@@ -2,6 +2,7 @@
 
 use chta::{
     graph::ReliabilityUse,
+    planner::Amount,
     scenario::{Entries, Key, Place, Scenario},
 };
 
@@ -50,6 +51,20 @@ struct Weighs {
     success: bool,
     /// Errors, which a plan estimates.
     errors: bool,
+    /// Amounts of an objective, or budgets of totals.
+    amounts: Amounts,
+}
+
+/// The amounts that a plan by objective weighs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Amounts {
+    /// There is no objective.
+    #[default]
+    None,
+    /// Totals.
+    Totals,
+    /// Totals and risk.
+    WithRisk,
 }
 
 impl Weighs {
@@ -58,6 +73,11 @@ impl Weighs {
             risk: scenario.risk != ReliabilityUse::Ignored,
             success: scenario.budget.estimated_success_min.is_some(),
             errors: scenario.uncertainty.as_ref().is_some_and(|keys| !keys.errors.is_none()),
+            amounts: match scenario.full_objective().amounts().contains(&Amount::Risk) {
+                _ if !scenario.plans_by_objective() => Amounts::None,
+                true => Amounts::WithRisk,
+                false => Amounts::Totals,
+            },
         }
     }
 }
@@ -103,10 +123,13 @@ impl Purpose {
 
     /// Whether its answer can depend on a key, where the choice of a path weighs risk or does not, and estimates a budget of success or does
     /// not.
-    fn uses(self, key: &Key, Weighs { risk: weighs_risk, success, errors }: Weighs) -> bool {
+    fn uses(self, key: &Key, weighs: Weighs) -> bool {
+        let Weighs { risk: weighs_risk, success, errors, amounts } = weighs;
         let on_a_dem = matches!(self, Self::Fan | Self::Map { .. });
         let flies = matches!(self, Self::Run | Self::Simulate | Self::Map { trials: true, .. });
         let by_risk = matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Compare);
+        let by_objective = amounts != Amounts::None && self.plans_by_objective();
+        let weighs_risk = weighs_risk || (amounts == Amounts::WithRisk && by_objective);
         let by_success = success && matches!(self, Self::Require | Self::Trade);
         let totals = matches!(self, Self::Plan | Self::Run | Self::Require | Self::Compare | Self::Map { goals: true, .. });
         match (key.table, key.name) {
@@ -120,9 +143,9 @@ impl Purpose {
                 | "efficiency"
                 | "isp_s"
                 | "hop_delta_v_overhead_m_s",
-            ) => totals,
+            ) => totals || by_objective,
             ("contact", _) => totals || flies || (by_risk && weighs_risk),
-            ("hopper", "propellant_max_kg") => self.counts_propellant(),
+            ("hopper", "propellant_max_kg") => self.counts_propellant() || by_objective,
             ("hopper", "takeoff_angle_step_deg" | "heading_step_deg") => self.flies_commands(),
             ("terrain", "dem" | "start_m" | "start_lonlat_deg" | "goal_m" | "goal_lonlat_deg")
                 if self.scenario_ends() != ScenarioEnds::Ignored =>
@@ -131,6 +154,7 @@ impl Purpose {
             }
             ("terrain", name) => !(on_a_dem && gives_way_to_a_dem(name)),
             ("search", "points_per_segment" | "node_spacing_max_m") => !matches!(self, Self::Hop | Self::Map { .. }),
+            ("search", "effort" | "takeoff_angle" | "split") if by_objective => true,
             ("search", "effort") => !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { effort: false, .. }),
             ("search", "takeoff_angle" | "split" | "risk" | "risk_extra_hops_max") if by_success => true,
             ("search", "takeoff_angle") => !matches!(self, Self::Trade | Self::Fan | Self::Map { goals: false, effort: false, .. }),
@@ -138,13 +162,19 @@ impl Purpose {
             // A robot that replans over a map weighs it.
             ("search", "risk") if matches!(self, Self::Map { trials: true, .. }) => true,
             ("search", "risk" | "risk_extra_hops_max") => by_risk,
-            ("budget", _) => by_risk || matches!(self, Self::Require | Self::Trade),
+            ("budget", "estimated_success_min") => by_risk || matches!(self, Self::Require | Self::Trade),
+            ("budget", _) | ("search", "objective") => self.plans_by_objective(),
             ("derating", _) => !matches!(self, Self::Map { .. }),
             // The trials of an estimate have a number and a seed of their own.
             ("uncertainty", "trials" | "seed") => flies,
             ("uncertainty", _) => flies || by_success || (errors && matches!(self, Self::Plan)) || (by_risk && weighs_risk),
             _ => true,
         }
+    }
+
+    /// Whether its paths are those of an objective within budgets, where the scenario has them.
+    const fn plans_by_objective(self) -> bool {
+        matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Require | Self::Trade | Self::Compare)
     }
 
     /// Whether its hops have commands in the machine's steps.
@@ -204,9 +234,14 @@ impl Purpose {
             }
             // So is a least success that the file wants, and a reserve of the limits.
             let is_default = key.table == "derating" && scenario.derating.is_none();
-            if matches!(key.table, "budget" | "derating") && self != Self::Hop && !is_default {
+            let is_objective = (key.table, key.name) == ("search", "objective");
+            if (matches!(key.table, "budget" | "derating") || is_objective) && self != Self::Hop && !is_default {
                 let users = Self::users(key, weighs, self);
-                let what = if key.table == "budget" { "counts hops and estimates no success" } else { "uses the whole limits" };
+                let what = match (key.table, key.name) {
+                    ("budget", "estimated_success_min") => "counts hops and estimates no success",
+                    ("budget" | "search", _) => "counts hops and no other totals",
+                    _ => "uses the whole limits",
+                };
                 warnings.push(format!("{} is not kept by this answer of chta {}, which {what}{users}", key.path(), self.command()));
                 continue;
             }

@@ -62,9 +62,10 @@ pub use rose::draw_rose;
 pub use scale::Scale;
 pub use spans::{Closure, GroundSpan, GroundUse};
 pub use trials::{
-    ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, FrontFigure, FrontPoint,
-    LandingBoxes, LandingErrorFigure, OutcomeBars, SensitivityBar, SensitivityFigure, SimulationFigure, Success, draw_cone_width,
-    draw_convergence, draw_flown, draw_front, draw_landing_errors, draw_outcomes, draw_sensitivity, draw_simulation,
+    ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, FrontAgainst, FrontFigure,
+    FrontPoint, FrontValue, LandingBoxes, LandingErrorFigure, OutcomeBars, SensitivityBar, SensitivityFigure, SimulationFigure,
+    Success, draw_cone_width, draw_convergence, draw_flown, draw_front, draw_landing_errors, draw_outcomes, draw_sensitivity,
+    draw_simulation,
 };
 
 use crate::{

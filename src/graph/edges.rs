@@ -106,7 +106,7 @@ impl HopGraph {
 
     /// The candidate landings of a station: those that the chain's speeds and heights do not exclude for one hop, and those
     /// on the station's own segments, which several hops along the segment may reach.
-    pub(super) fn landings(&self, takeoff: &Station) -> Range<usize> {
+    pub(crate) fn landings(&self, takeoff: &Station) -> Range<usize> {
         around(self.nodes.stations(), takeoff, self.test.counted_reach_m(takeoff))
     }
 }

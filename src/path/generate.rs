@@ -8,6 +8,7 @@ use crate::{
     graph::{Edge, Leg},
     ground::{ChainGround, ChainPosition, DemGround, Surface, heading_of},
     hop::{HopMargins, HopTest, SegmentHops, Split},
+    planner::{Amount, Amounts},
     quantity::{Angle, AngleInterval, SlopeInterval},
     world::{Contact, Direction, Hopper, Limit},
 };
@@ -113,6 +114,27 @@ impl HopPath {
         }
         let totals = totals(&hops, hopper);
         Self { hops, totals }
+    }
+}
+
+impl HopPath {
+    /// What the path takes: the totals, with the number of hops, the sum of take-off speeds and the length of the arcs. Risk is 0.
+    #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
+    pub fn amounts(&self) -> Amounts {
+        let totals = &self.totals;
+        let sum = |of: &dyn Fn(&Hop) -> f64| self.hops.iter().map(of).sum::<f64>();
+        // The length of an arc does not depend on gravity.
+        let arc = |hop: &Hop| Arc::new(hop.line_of_sight(), hop.takeoff_angle.slope() - hop.line_of_sight().slope(), 1.0);
+        Amounts::NONE
+            .with(Amount::Hops, self.hops.len() as f64)
+            .with(Amount::TakeoffSpeed, sum(&|hop| hop.takeoff_speed_m_s))
+            .with(Amount::DeltaV, totals.delta_v_m_s)
+            .with(Amount::Energy, totals.energy_j_kg)
+            .with(Amount::FlightTime, totals.flight_time_s)
+            .with(Amount::MissionTime, totals.mission_time_s.unwrap_or(totals.flight_time_s))
+            .with(Amount::Distance, totals.ground_distance_m)
+            .with(Amount::ArcLength, sum(&|hop| arc(hop).length_m()))
+            .with(Amount::PeakSpeed, totals.peak_takeoff_speed_m_s)
     }
 }
 

@@ -9,6 +9,17 @@ pub struct Budgets {
     most: [f64; Amount::COUNT],
 }
 
+/// A greatest total with the key that sets it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TotalBudget {
+    /// Of which amount.
+    pub amount: Amount,
+    /// The key, for messages.
+    pub key: &'static str,
+    /// The greatest total, in the unit of the amount.
+    pub most: f64,
+}
+
 /// A greatest total that is no amount.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the budget of {amount} is {found}, expected a number of at least 0")]

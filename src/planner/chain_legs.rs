@@ -180,7 +180,7 @@ impl LegGraph for ChainLegs<'_> {
         let (test, limits) = (self.graph.test(), self.graph.test().hopper().limits());
         let takeoff = self.station(node);
         let is_first = node == self.ends().0;
-        for target in self.graph.nodes().within(takeoff, test.counted_reach_m(takeoff)).filter(|target| *target != node) {
+        for target in self.graph.landings(takeoff).filter(|target| *target != node) {
             self.counter.borrow_mut().pair()?;
             let landing = self.station(target);
             match self.graph.edge(takeoff, landing) {

@@ -14,7 +14,7 @@ mod search;
 
 pub use amount::{Amount, Amounts};
 pub use bounds::LeastAmounts;
-pub use budget::{BudgetProblem, Budgets, OverBudget};
+pub use budget::{BudgetProblem, Budgets, OverBudget, TotalBudget};
 pub use chain_legs::{
     ChainLegs, ChainPath, ChainQuestion, ChainSearched, SearchedCommands, UnmetBudget, front_on_chain, search_on_chain,
 };

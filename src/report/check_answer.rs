@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    derating_record::DeratingRecord, hop_answer::BindingRecord, limit_counts::LimitCounts, proof_record::ProofRecord,
-    propellant_record::PropellantShortage, success_record::SuccessBudgetRecord,
+    derating_record::DeratingRecord, hop_answer::BindingRecord, limit_counts::LimitCounts, objective_record::ObjectiveRecord,
+    proof_record::ProofRecord, propellant_record::PropellantShortage, success_record::SuccessBudgetRecord,
 };
 use crate::{
     graph::{
@@ -53,6 +53,10 @@ pub struct CheckAnswer {
     /// Of a scenario with a budget of success: whether the path has it; if not, the verdict is `no-path-found`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub success_budget: Option<SuccessBudgetRecord>,
+    /// Of a plan by objective or within budgets of totals: what it was planned for, and whether it keeps the budgets; if not, the verdict is
+    /// `no-path-found`.
+    #[serde(flatten)]
+    pub objective: Option<ObjectiveRecord>,
     /// The shares of the limits that this answer, a proof and all margins are for; absent if they are for the whole limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derating: Option<DeratingRecord>,
@@ -205,6 +209,7 @@ impl CheckAnswer {
             frontier,
             propellant_shortage: None,
             success_budget: None,
+            objective: None,
             derating: None,
             commands_refusal: None,
             landing_miss_max_m: None,
@@ -234,6 +239,9 @@ impl CheckAnswer {
             // Not that of the exact commands.
             effort.value = path.effort(effort.name);
         }
+        if let (Some(path), Some(objective)) = (path, self.objective.take()) {
+            self = self.with_objective(Some(objective.flown(&path.amounts())));
+        }
         if self.propellant_shortage.is_some() { self.open() } else { self }
     }
 
@@ -254,6 +262,15 @@ impl CheckAnswer {
         if budget.is_some_and(|budget| !budget.met) { self.open() } else { self }
     }
 
+    /// Adds what a plan by objective takes of its budgets. A path that takes too much answers no, which nothing proves: paths over other
+    /// nodes may take less.
+    #[must_use]
+    pub fn with_objective(mut self, objective: Option<ObjectiveRecord>) -> Self {
+        let met = objective.as_ref().is_none_or(ObjectiveRecord::is_met);
+        self.objective = objective;
+        if met { self } else { self.open() }
+    }
+
     /// Adds the shares of the limits that it is for.
     #[must_use]
     pub const fn with_derating(mut self, derating: Option<DeratingRecord>) -> Self {
@@ -271,9 +288,13 @@ impl CheckAnswer {
     }
 
     /// Whether there is a path that the machine can fly.
-    pub const fn is_traversable(&self) -> bool {
+    pub fn is_traversable(&self) -> bool {
         let is_reliable = !matches!(self.success_budget, Some(SuccessBudgetRecord { met: false, .. }));
-        self.hops.is_some() && self.propellant_shortage.is_none() && self.commands_refusal.is_none() && is_reliable
+        self.hops.is_some()
+            && self.propellant_shortage.is_none()
+            && self.commands_refusal.is_none()
+            && is_reliable
+            && self.objective.as_ref().is_none_or(ObjectiveRecord::is_met)
     }
 }
 

@@ -14,6 +14,7 @@ pub mod landings;
 mod limit_counts;
 mod limit_pair;
 mod map_answer;
+mod objective_record;
 mod path_record;
 mod plan_answer;
 mod proof_record;
@@ -48,6 +49,7 @@ pub use hop_margins::HopMarginsRecord;
 pub use limit_counts::LimitCounts;
 pub use limit_pair::LimitPair;
 pub use map_answer::{GoalRecord, MapAnswer, MapEffortRecord, MapSummary, MobilityRecord, ReturnRecord, StartRecord};
+pub use objective_record::{AmountRecord, BudgetRecord, ObjectiveRecord};
 pub use path_record::{
     AimRecord, EnergyBasis, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv,
 };
@@ -55,7 +57,7 @@ pub use plan_answer::{PlanAnswer, plan_text};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
 pub use propellant_record::{PropellantShortage, StoresRecord};
 pub use reliability_record::{ReliablePathRecord, SuccessEstimate, reliable_paths_text};
-pub use require_answer::{RequireAnswer, RequireSuccessRecord, RequireTry, SuccessTry};
+pub use require_answer::{BudgetsTry, RequireAnswer, RequireBudgetsRecord, RequireSuccessRecord, RequireTry, SuccessTry};
 pub use sensitivity_answer::{SensitivityAnswer, SensitivityRow};
 pub use sigma_margins::SigmaMarginsRecord;
 pub use simulate_answer::{
@@ -63,7 +65,9 @@ pub use simulate_answer::{
     SuccessRequirement, simulate_text,
 };
 pub use size_answer::{SizeAnswer, SizeRecord};
-pub use success_record::{FrontRecord, SuccessBudgetRecord, estimate_ci95, front_text};
+pub use success_record::{
+    FrontRecord, FrontSearchRecord, FrontSuccess, SuccessBudgetRecord, amount_front_text, estimate_ci95, front_text,
+};
 pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};
 pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow, with_unit};
 pub use trajectory::{trajectory_columns, write_trajectory_csv};

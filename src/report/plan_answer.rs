@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    CheckAnswer, FrontRecord, FurtherMeans, HopRecord, ReliablePathRecord, TotalsRecord, check_text, front_text, path_text,
-    reliable_paths_text, sigma_margins::edge_text,
+    CheckAnswer, FrontRecord, FrontSearchRecord, FurtherMeans, HopRecord, ReliablePathRecord, TotalsRecord, amount_front_text,
+    check_text, front_text, path_text, reliable_paths_text, sigma_margins::edge_text,
 };
 
 /// The answer of a plan: the check, the path, its totals.
@@ -24,9 +24,12 @@ pub struct PlanAnswer {
     /// The Pareto front of hops against success probability, where the scenario weighs risk.
     #[serde(rename = "surest", default, skip_serializing_if = "Vec::is_empty")]
     pub reliable_paths: Vec<ReliablePathRecord>,
-    /// The front of hops against reliability, in ascending order of both; empty without a path, absent if not requested.
+    /// The front of hops against reliability or an amount, in ascending order of hops; empty without a path, absent if not requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front: Option<Vec<FrontRecord>>,
+    /// Of a front against another amount than risk: what it was searched for.
+    #[serde(flatten)]
+    pub front_search: Option<FrontSearchRecord>,
 }
 
 /// The text of `chta plan`.
@@ -36,9 +39,10 @@ pub fn plan_text(answer: &PlanAnswer, means: FurtherMeans<'_>) -> String {
         text.push('\n');
         text.push_str(&path_text(&answer.path, totals));
     }
-    match &answer.front {
-        Some(front) => text.push_str(&front_text(front)),
-        None => text.push_str(&reliable_paths_text(&answer.reliable_paths, answer.check.hops)),
+    match (&answer.front, &answer.front_search) {
+        (Some(front), Some(of)) => text.push_str(&amount_front_text(front, of)),
+        (Some(front), None) => text.push_str(&front_text(front)),
+        (None, _) => text.push_str(&reliable_paths_text(&answer.reliable_paths, answer.check.hops)),
     }
     if let Some(estimate) = answer.totals.as_ref().and_then(|totals| totals.estimate) {
         text.push_str(&estimate.text(&answer.reliable_paths, answer.check.hops));

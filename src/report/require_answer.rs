@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{DeratingRecord, GapRecord, HopRecord, SuccessBudgetRecord, TotalsRecord};
+use super::{DeratingRecord, GapRecord, HopRecord, ObjectiveRecord, SuccessBudgetRecord, TotalsRecord};
 use crate::graph::proof::ProofVerdict;
 
 /// The answer of `chta require`.
@@ -42,6 +42,9 @@ pub struct RequireAnswer {
     /// Of a scenario with a budget of success: how sure the value is. Nothing is proved then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub success: Option<RequireSuccessRecord>,
+    /// Of a scenario with an objective or budgets of totals: what was tried. Nothing is proved then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within_budgets: Option<RequireBudgetsRecord>,
     /// The shares of the limits that this answer is for; absent if it is for the whole limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derating: Option<DeratingRecord>,
@@ -83,6 +86,31 @@ pub struct RequireSuccessRecord {
     pub tries: Vec<SuccessTry>,
 }
 
+/// The least capable value whose best path by the objective keeps the budgets. That need not grow with a capability: between the values tried
+/// it may be otherwise.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RequireBudgetsRecord {
+    /// What the path of that value was planned for, and takes of its budgets; null if no value tried has one within them.
+    pub at: Option<ObjectiveRecord>,
+    /// Whether every value tried that is more capable than the one found has a path within the budgets as well.
+    pub within_from_there_on: bool,
+    /// Every value tried, from the least capable to the most capable.
+    pub tries: Vec<BudgetsTry>,
+}
+
+/// A path by objective at one value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct BudgetsTry {
+    /// The value, in the key's unit.
+    pub value: f64,
+    /// The hops of the path: the best within the budgets, or else the best without them; null without a path.
+    pub hops: Option<u64>,
+    /// Whether a path keeps the budgets.
+    pub within: bool,
+    /// The keys of the budgets that it exceeds.
+    pub exceeds: Vec<String>,
+}
+
 /// The success at one value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SuccessTry {
@@ -94,6 +122,15 @@ pub struct SuccessTry {
     pub success_estimated: f64,
     /// Its 95 % interval by Wilson's score.
     pub success_estimated_ci95: [f64; 2],
+}
+
+impl BudgetsTry {
+    /// What a plan by objective says at a value.
+    pub fn new(value: f64, hops: Option<u64>, objective: Option<&ObjectiveRecord>) -> Self {
+        let unmet = objective.into_iter().flat_map(|objective| &objective.budgets).filter(|budget| !budget.met);
+        let exceeds: Vec<String> = unmet.map(|budget| budget.key.clone()).collect();
+        Self { value, hops, within: hops.is_some() && exceeds.is_empty(), exceeds }
+    }
 }
 
 impl SuccessTry {

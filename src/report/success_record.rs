@@ -1,19 +1,41 @@
 //! The estimated success of paths: the front of hops against reliability, and a budget of success.
 
+use std::fmt::Write as _;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{TotalsRecord, text::Sheet};
 use crate::{
+    planner::Amount,
     quantity::format_number,
     uncertainty::{ESTIMATE_TRIALS, Policy, Wilson},
 };
 
-/// A path of the front of hops against reliability: no path of the front with fewer hops has as great an estimated success.
+/// A path of a front: no path of the front with fewer hops has as great an estimated success, or takes as little of the front's amount.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrontRecord {
     /// The number of hops.
     pub hops: u64,
+    /// Of a front of hops against risk: how reliably it is flown.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub success: Option<FrontSuccess>,
+    /// Whether it is the path of the plan.
+    pub planned: bool,
+    /// Of a front against it: the sum of take-off speeds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub takeoff_speed_sum_m_s: Option<f64>,
+    /// Of a front against it: the length of the arcs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arc_length_m: Option<f64>,
+    /// Its totals.
+    #[serde(flatten)]
+    pub totals: TotalsRecord,
+}
+
+/// The estimated success of a path of a front.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FrontSuccess {
     /// The share of the fixed trials that reach the goal.
     pub success_estimated: f64,
     /// Its 95 % interval by Wilson's score.
@@ -22,11 +44,6 @@ pub struct FrontRecord {
     pub trials: u64,
     /// The policy they are flown under.
     pub policy: Policy,
-    /// Whether it is the path of the plan.
-    pub planned: bool,
-    /// Its totals.
-    #[serde(flatten)]
-    pub totals: TotalsRecord,
 }
 
 impl FrontRecord {
@@ -34,12 +51,76 @@ impl FrontRecord {
     pub fn improving(rows: impl IntoIterator<Item = Self>) -> Vec<Self> {
         let mut best = f64::NEG_INFINITY;
         let improves = |row: &Self| {
-            let better = row.success_estimated > best;
-            best = best.max(row.success_estimated);
+            let success = row.success.map_or(f64::NEG_INFINITY, |success| success.success_estimated);
+            let better = success > best;
+            best = best.max(success);
             better
         };
         rows.into_iter().filter(improves).collect()
     }
+
+    /// What the path takes of an amount; NaN of risk, of which it has an estimated success.
+    #[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
+    pub fn of(&self, amount: Amount) -> f64 {
+        match amount {
+            Amount::Hops => self.hops as f64,
+            Amount::TakeoffSpeed => self.takeoff_speed_sum_m_s.unwrap_or(f64::NAN),
+            Amount::DeltaV => self.totals.delta_v_m_s,
+            Amount::Energy => self.totals.energy_j_kg,
+            Amount::FlightTime => self.totals.flight_time_s,
+            Amount::MissionTime => self.totals.mission_time_s.unwrap_or(self.totals.flight_time_s),
+            Amount::Distance => self.totals.ground_distance_m,
+            Amount::ArcLength => self.arc_length_m.unwrap_or(f64::NAN),
+            Amount::Risk => f64::NAN,
+            Amount::PeakSpeed => self.totals.peak_takeoff_speed_m_s,
+        }
+    }
+}
+
+/// What a front of hops against an amount other than risk was searched for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FrontSearchRecord {
+    /// The amount against which hops are traded.
+    pub front_amount: Amount,
+    /// The most hops of a path of the front.
+    pub front_hops_max: u64,
+    /// Whether the search left out labels because there were too many: the front may then miss paths.
+    pub front_labels_capped: bool,
+}
+
+/// A front of hops against an amount as text.
+pub fn amount_front_text(rows: &[FrontRecord], of: &FrontSearchRecord) -> String {
+    let (amount, most) = (of.front_amount, of.front_hops_max);
+    let mut sheet = Sheet::default();
+    if rows.is_empty() {
+        sheet.line(format_args!("\nhops against {amount}: no path"));
+        return sheet.into_text();
+    }
+    let shown = [Amount::FlightTime, Amount::Energy, Amount::PeakSpeed].map(|other| (other, other != amount));
+    let heading = |amount: Amount| format!("{amount} ({})", amount.unit());
+    let mut heads = format!("{:>6}{:>22}", "hops", heading(amount));
+    for (other, _) in shown.iter().filter(|(_, is_shown)| *is_shown) {
+        let _ = write!(heads, "{:>20}", heading(*other));
+    }
+    sheet.line(format_args!(
+        "\nhops against {amount}: for every number of hops up to {most} the path of the least {}, if it improves on all with fewer, over\n\
+         the distinct commands of every hop\n{heads}",
+        amount.words()
+    ));
+    for row in rows {
+        let mut line = format!("{:>6}{:>22.4}", row.hops, row.of(amount));
+        for (other, _) in shown.iter().filter(|(_, is_shown)| *is_shown) {
+            let _ = write!(line, "{:>20.4}", row.of(*other));
+        }
+        let planned = if row.planned { "  <- the path above" } else { "" };
+        sheet.line(format_args!("{line}{planned}"));
+    }
+    if of.front_labels_capped {
+        sheet.line(format_args!(
+            "the search left out labels because there were too many: the front may miss paths; fewer nodes need fewer"
+        ));
+    }
+    sheet.into_text()
 }
 
 /// The 95 % interval of an estimate by the fixed trials.
@@ -52,7 +133,7 @@ pub fn estimate_ci95(success_estimated: f64) -> [f64; 2] {
 /// The front as text.
 pub fn front_text(rows: &[FrontRecord]) -> String {
     let mut sheet = Sheet::default();
-    let Some(first) = rows.first() else {
+    let Some(first) = rows.first().and_then(|row| row.success) else {
         sheet.line(format_args!("\nhops against reliability: no path"));
         return sheet.into_text();
     };
@@ -62,12 +143,12 @@ pub fn front_text(rows: &[FrontRecord]) -> String {
         "hops", "estimated success", "95 % interval", "flight (s)", "energy (J/kg)", "fastest (m/s)"
     ));
     for row in rows {
-        let [low, high] = row.success_estimated_ci95;
+        let Some(FrontSuccess { success_estimated, success_estimated_ci95: [low, high], .. }) = row.success else { continue };
         let planned = if row.planned { "  <- the path above" } else { "" };
         sheet.line(format_args!(
             "{:>6}{:>20.4}{:>22}{:>14.3}{:>16.4}{:>16.4}{planned}",
             row.hops,
-            row.success_estimated,
+            success_estimated,
             format!("{low:.4} to {high:.4}"),
             row.totals.flight_time_s,
             row.totals.energy_j_kg,

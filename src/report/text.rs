@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::{
-    BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ProofRecord, RequireAnswer, RequireSuccessRecord,
-    SuccessTry, TotalsRecord, WindowRecord,
+    BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ObjectiveRecord, ProofRecord, RequireAnswer,
+    RequireBudgetsRecord, RequireSuccessRecord, SuccessTry, TotalsRecord, WindowRecord,
     limit_counts::LimitCounts,
     propellant_record::{delta_v_field, stores_lines},
 };
@@ -173,6 +173,10 @@ pub fn require_text(answer: &RequireAnswer) -> String {
         success_lines(&mut sheet, success, answer, &with_unit);
         return sheet.0;
     }
+    if let Some(within) = &answer.within_budgets {
+        budgets_lines(&mut sheet, within, answer, &with_unit);
+        return sheet.0;
+    }
     match answer.reachable_at {
         Some(value) if answer.never_binds => {
             let hops = answer.hops.unwrap_or(0);
@@ -213,6 +217,42 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     }
     sheet.line(format_args!("{} values tried, from {from} to {to}", answer.tries.len()));
     sheet.0
+}
+
+/// The least value with a path within the budgets, and what was tried where that does not hold from there on.
+fn budgets_lines(sheet: &mut Sheet, within: &RequireBudgetsRecord, answer: &RequireAnswer, with_unit: &dyn Fn(f64) -> String) {
+    let (from, to) = (format_number(answer.from), with_unit(answer.to));
+    match answer.reachable_at {
+        Some(value) => {
+            let hops = answer.hops.unwrap_or(0);
+            sheet.line(format_args!("a path within the budgets at {}, in {hops} hop{}", with_unit(value), plural(hops)));
+        }
+        None => sheet.line(format_args!("a path within the budgets at no value tried from {from} to {to}")),
+    }
+    for sentence in within.at.iter().flat_map(ObjectiveRecord::sentences) {
+        sheet.line(format_args!("{sentence}"));
+    }
+    if !answer.resolution_met {
+        sheet.line(format_args!("the resolution of {} is not met", format_number(answer.resolution)));
+    }
+    if !within.within_from_there_on || answer.reachable_at.is_none() {
+        if !within.within_from_there_on {
+            sheet.line(format_args!(
+                "not every more capable value has a path within the budgets: its best path may take more, and the commands of its hops are others"
+            ));
+        }
+        sheet.line(format_args!("values tried, from the least capable to the most capable:"));
+        for tried in &within.tries {
+            let hops = tried.hops.map_or_else(|| "no path".to_owned(), |hops| format!("{hops} hop{}", plural(hops)));
+            let said =
+                if tried.exceeds.is_empty() { String::new() } else { format!(", too much for {}", tried.exceeds.join(", ")) };
+            sheet.line(format_args!("  {}: {hops}{said}", with_unit(tried.value)));
+        }
+    }
+    sheet.line(format_args!(
+        "{} values tried, from {from} to {to}: nothing is proved, and between them it may be otherwise",
+        within.tries.len()
+    ));
 }
 
 /// The least value with enough success, how sure it is, and what was tried where success does not grow with the key.
@@ -338,6 +378,9 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
     }
     if let Some(budget) = &answer.success_budget {
         sheet.line(format_args!("{}", budget.sentence()));
+    }
+    for sentence in answer.objective.iter().flat_map(ObjectiveRecord::sentences) {
+        sheet.line(format_args!("{sentence}"));
     }
     if let Some(refusal) = &answer.commands_refusal {
         sheet.line(format_args!("not with commands in steps: {refusal}"));

@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    EffortRecord, MarginsRecord, SuccessBudgetRecord, TotalsRecord,
+    EffortRecord, MarginsRecord, ObjectiveRecord, SuccessBudgetRecord, TotalsRecord,
     compare_answer::{MARGIN_COLUMNS, TOTALS_COLUMNS, margin_numbers, totals_numbers},
     stated::stated,
 };
@@ -62,6 +62,9 @@ pub struct TradeRow {
     /// Of a scenario with a budget of success: whether the path has it; if not, the cell has no path.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub success_budget: Option<SuccessBudgetRecord>,
+    /// Of a plan by objective or within budgets of totals: what it takes of them; if it is too much, the cell has no path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by_objective: Option<ObjectiveRecord>,
     /// Why there is no answer; absent if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
@@ -71,8 +74,21 @@ impl TradeRow {
     /// The row of a cell without an answer.
     pub fn failed(values: BTreeMap<String, f64>, error: String) -> Self {
         let (verdict, hops, lower_bound, totals, margins, effort) = (None, None, None, None, None, None);
-        let (above_escape, far_on_body, success_budget, error) = (false, false, None, Some(error));
-        Self { values, verdict, hops, lower_bound, above_escape, far_on_body, totals, margins, effort, success_budget, error }
+        let (above_escape, far_on_body, success_budget, by_objective, error) = (false, false, None, None, Some(error));
+        Self {
+            values,
+            verdict,
+            hops,
+            lower_bound,
+            above_escape,
+            far_on_body,
+            totals,
+            margins,
+            effort,
+            success_budget,
+            by_objective,
+            error,
+        }
     }
 
     /// Whether a path was found.

@@ -4,6 +4,7 @@ use crate::{
     ballistics::TakeoffChoice,
     graph::{Effort, ReliabilityUse},
     hop::Split,
+    planner::{Amount, Objective},
     uncertainty::{Distribution, Policy},
     world::{ClearanceRule, LandingMode, RESTITUTION_MAX, SpeedLevels},
 };
@@ -47,6 +48,8 @@ pub enum Kind {
     Word(&'static [&'static str]),
     /// A list of speeds in m/s, ascending.
     Speeds,
+    /// A list of amounts of a path, the first to be least, the next to break its ties.
+    Amounts,
     /// Any text.
     Text,
 }
@@ -107,6 +110,12 @@ impl Kind {
                 bound(SPEED_LEAST),
                 bound(SPEED_MOST)
             ),
+            Self::Amounts => format!(
+                "a list of 1 to {} of {}, each once, {} last only, such as [\"hops\", \"energy\"]",
+                Objective::MOST,
+                Amount::ALL.map(Amount::name).join(", "),
+                Amount::PeakSpeed
+            ),
             Self::Text => "a text in quotes, not empty".to_owned(),
         }
     }
@@ -149,7 +158,7 @@ const DISTRIBUTIONS: [&str; 2] = [Distribution::ALL[0].name(), Distribution::ALL
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 85] = [
+pub const CATALOGUE: [Key; 92] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -322,6 +331,23 @@ pub const CATALOGUE: [Key; 85] = [
         "hops beyond the fewest that a more reliable path may take; absent: 10, or half the fewest if that is more",
     ),
     key(
+        "search",
+        "objective",
+        Kind::Amounts,
+        "instead of effort: what is to be least, and what breaks ties, over the distinct commands of every hop; absent: hops, then effort",
+    ),
+    key("budget", "hops_max", Kind::Count { min: 1, max: 1_000_000 }, "greatest number of hops of a path"),
+    key(
+        "budget",
+        "mission_time_max_s",
+        LENGTH,
+        "greatest time from the first preparation to the last landing, s: flights, preparation, settling",
+    ),
+    key("budget", "flight_time_total_max_s", LENGTH, "greatest sum of flight times, s"),
+    key("budget", "energy_max_j_kg", LENGTH, "greatest energy of a path per unit mass, from the store, J/kg"),
+    key("budget", "energy_max_j", LENGTH, "instead: greatest energy of a path, J; needs hopper.mass_kg"),
+    key("budget", "delta_v_max_m_s", LENGTH, "greatest delta-v of a path, m/s"),
+    key(
         "budget",
         "estimated_success_min",
         PROPORTION,
@@ -435,6 +461,8 @@ mod tests {
             "no_data",
             "risk_extra_hops_max",
             "estimated_success_min",
+            "hops_max",
+            "objective",
             "takeoff_speed",
             "landing_speed",
             "friction",

@@ -2,9 +2,10 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Scenario, TerrainSource, UncertaintyKeys};
+use super::{Budget, Scenario, TerrainSource, UncertaintyKeys};
 use crate::{
     graph::{PointSpacing, ReliabilityUse},
+    planner::SearchedCommands,
     quantity::AngleInterval,
     terrain::{MapPlace, NoDataRule},
     world::{ClearanceRule, Grip, RestSlope},
@@ -20,7 +21,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     tables.insert("contact".to_owned(), contact(scenario));
     tables.insert("terrain".to_owned(), terrain(scenario, named));
     tables.insert("search".to_owned(), search(scenario));
-    tables.insert("budget".to_owned(), object([("estimated_success_min", scenario.budget.estimated_success_min.map(Value::from))]));
+    tables.insert("budget".to_owned(), budget(&scenario.budget));
     let derating = scenario.derating;
     let share = |share: f64| (share != 1.0).then(|| Value::from(share));
     tables.insert(
@@ -194,14 +195,31 @@ fn search(scenario: &Scenario) -> Value {
     object([
         ("points_per_segment", points),
         ("node_spacing_max_m", spacing),
-        ("effort", Some(search.effort.name().into())),
-        ("takeoff_angle", Some(search.takeoff.name().into())),
+        ("effort", scenario.objective.is_none().then(|| search.effort.name().into())),
+        // A search over several commands is told by the absence of one.
+        ("takeoff_angle", (scenario.commands == SearchedCommands::Chosen).then(|| search.takeoff.name().into())),
         ("split", Some(search.split.name().into())),
         ("risk", Some(scenario.risk.name().into())),
         (
             "risk_extra_hops_max",
             (scenario.risk == ReliabilityUse::Traded).then_some(scenario.risk_extra_hops_max).flatten().map(Value::from),
         ),
+        (
+            "objective",
+            scenario.objective.as_ref().map(|objective| objective.amounts().iter().map(|amount| amount.name()).collect()),
+        ),
+    ])
+}
+
+fn budget(budget: &Budget) -> Value {
+    object([
+        ("hops_max", budget.hops_max.map(Value::from)),
+        ("mission_time_max_s", budget.mission_time_max_s.map(Value::from)),
+        ("flight_time_total_max_s", budget.flight_time_total_max_s.map(Value::from)),
+        ("energy_max_j_kg", budget.energy_max_j_kg.map(Value::from)),
+        ("energy_max_j", budget.energy_max_j.map(Value::from)),
+        ("delta_v_max_m_s", budget.delta_v_max_m_s.map(Value::from)),
+        ("estimated_success_min", budget.estimated_success_min.map(Value::from)),
     ])
 }
 

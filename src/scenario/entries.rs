@@ -9,7 +9,11 @@ use super::{
     backslashes::{Backslashed, control_character, line_at, unreadable_lines},
     catalogue::{SPEED_LEAST, SPEED_MOST},
 };
-use crate::{terrain::NoDataRule, world::SpeedLevels};
+use crate::{
+    planner::{Amount, Objective},
+    terrain::NoDataRule,
+    world::SpeedLevels,
+};
 
 /// The source of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -319,6 +323,11 @@ impl Entries {
         self.value(table, name).and_then(speeds)
     }
 
+    /// An objective; `None` if it was not given.
+    pub(super) fn objective(&self, table: &str, name: &str) -> Option<Objective> {
+        self.value(table, name).and_then(objective)
+    }
+
     /// Points; empty if they were not given.
     pub(super) fn points(&self, table: &str, name: &str) -> Vec<[f64; 2]> {
         self.value(table, name).and_then(toml::Value::as_array).into_iter().flatten().filter_map(pair).collect()
@@ -502,6 +511,12 @@ fn speeds(value: &toml::Value) -> Option<SpeedLevels> {
     SpeedLevels::new(&speeds).ok()
 }
 
+/// An array of names of amounts that are an objective.
+fn objective(value: &toml::Value) -> Option<Objective> {
+    let named = |name: &toml::Value| Amount::ALL.into_iter().find(|amount| name.as_str() == Some(amount.name()));
+    Objective::new(value.as_array()?.iter().map(named).collect::<Option<Vec<_>>>()?).ok()
+}
+
 /// Whether a value is of a kind.
 pub(crate) fn fits(value: &toml::Value, kind: Kind) -> bool {
     match kind {
@@ -520,6 +535,7 @@ pub(crate) fn fits(value: &toml::Value, kind: Kind) -> bool {
         Kind::Count { min, max } => count(value).is_some_and(|n| (min..=max).contains(&n)),
         Kind::Word(words) => value.as_str().is_some_and(|word| words.contains(&word)),
         Kind::Speeds => speeds(value).is_some(),
+        Kind::Amounts => objective(value).is_some(),
         Kind::Text => value.as_str().is_some_and(|text| !text.trim().is_empty()),
     }
 }

@@ -10,6 +10,7 @@ use crate::{
     ballistics::TakeoffChoice,
     graph::{Effort, PointSpacing, ReliabilityUse, SearchOptions},
     hop::Split,
+    planner::{Objective, SearchedCommands},
     quantity::{Angle, AngleInterval, MapPoint},
     terrain::{LonLat, MapPlace, NoDataRule},
     world::{
@@ -118,8 +119,12 @@ pub struct Scenario {
     pub risk: ReliabilityUse,
     /// Hops beyond the fewest that a more reliable path may take, if hops are traded for reliability.
     pub risk_extra_hops_max: Option<u32>,
-    /// What a path has to give at least.
+    /// What a path has to give at least, and may take at most.
     pub budget: Budget,
+    /// What is to be least, where the scenario says it by more than an effort.
+    pub objective: Option<Objective>,
+    /// Which commands a plan by objective chooses from.
+    pub commands: SearchedCommands,
     /// Shares of the limits that planning may use.
     pub derating: Derating,
     /// The errors of the trials, if the scenario has `[uncertainty]`.
@@ -155,9 +160,11 @@ impl Scenario {
         let derating = super::derating::derating(&mut entries, &hopper, &surface);
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
         let budget = super::budget::budget(&entries);
+        let (objective, commands, wanted_angle) = super::budget::objective(&mut entries, budget, &hopper, uncertainty.as_ref());
         let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries, uncertainty.as_ref(), budget);
         super::budget::check(&mut entries, budget, risk, uncertainty.as_ref());
-        let search = search(&mut entries, super::trials::takeoff_choice(risk, uncertainty.as_ref()));
+        let takeoff = wanted_angle.unwrap_or_else(|| super::trials::takeoff_choice(risk, uncertainty.as_ref()));
+        let search = search(&mut entries, takeoff);
         let mut problems = entries.problems().to_vec();
         let Some(body) = body.filter(|_| problems.is_empty()) else {
             let first = |problem: &ScenarioProblem| match &problem.place {
@@ -183,6 +190,8 @@ impl Scenario {
             risk,
             risk_extra_hops_max,
             budget,
+            objective,
+            commands,
             derating,
             uncertainty,
             title: entries.text("report", "title").map(str::to_owned),

@@ -6,7 +6,10 @@ use super::{
     CATALOGUE, Kind,
     catalogue::{MOST, SPEED_LEAST, SPEED_MOST},
 };
-use crate::world::SpeedLevels;
+use crate::{
+    planner::{Amount, Objective},
+    world::SpeedLevels,
+};
 
 /// The JSON schema (draft 2020-12) of a scenario as a document: its tables with the keys of [`CATALOGUE`], their kinds, bounds and
 /// meanings. It holds for a TOML scenario as well.
@@ -54,6 +57,10 @@ fn of_kind(kind: Kind) -> Value {
         Kind::Word(words) => json!({ "enum": words }),
         Kind::Speeds => {
             json!({ "type": "array", "items": number(SPEED_LEAST, SPEED_MOST), "minItems": 1, "maxItems": SpeedLevels::MOST })
+        }
+        Kind::Amounts => {
+            let names = Amount::ALL.map(Amount::name);
+            json!({ "type": "array", "items": { "enum": names }, "minItems": 1, "maxItems": Objective::MOST, "uniqueItems": true })
         }
         Kind::Text => json!({ "type": "string", "pattern": "\\S" }),
     }

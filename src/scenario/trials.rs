@@ -131,7 +131,22 @@ pub(super) fn risk(entries: &mut Entries, uncertainty: Option<&UncertaintyKeys>,
     let is_estimated = uncertainty.is_some() && budget.estimated_success_min.is_some();
     let absent = if is_estimated || has_errors(uncertainty) { ReliabilityUse::Traded } else { ReliabilityUse::Ignored };
     let given = super::read::find(&ReliabilityUse::ALL, ReliabilityUse::name, entries.text("search", "risk"));
+    let by_objective = budget.limits_totals() || entries.objective("search", "objective").is_some();
+    let absent = if by_objective && budget.estimated_success_min.is_none() { ReliabilityUse::Ignored } else { absent };
     let risk = given.unwrap_or(absent);
+    if by_objective && budget.estimated_success_min.is_none() && risk != ReliabilityUse::Ignored {
+        let message = format!(
+            "search.risk = \"{}\" beside search.objective or a budget of a total, expected one of the two: a plan by objective weighs \
+             reliability only where the objective has risk",
+            risk.name()
+        );
+        entries.problem(
+            ("search", "risk"),
+            ProblemKind::Conflict,
+            message,
+            "remove risk, or the objective and the budgets; objective = [\"hops\", \"risk\"] is the most reliable path of the fewest hops",
+        );
+    }
     let extra = entries.count("search", "risk_extra_hops_max").and_then(|hops| u32::try_from(hops).ok());
     if extra.is_some() && risk != ReliabilityUse::Traded {
         let message = format!("search.risk_extra_hops_max with search.risk = \"{}\", which allows no extra hops", risk.name());

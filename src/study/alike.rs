@@ -10,7 +10,7 @@ use crate::{
 ///
 /// Speed limits are compared after the segments' own limits are applied, so one beyond the chain's limits makes no difference. What
 /// only counts in totals (mass, propellant, times, energies) or after a landing (bounces) is ignored; errors count where a budget of success
-/// estimates them.
+/// estimates them, and totals where a plan by objective or a budget of totals counts them.
 pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &Prepared)) -> bool {
     let machine = |hopper: &Hopper| HopperLimits {
         takeoff_speed_max_m_s: 0.0,
@@ -31,7 +31,12 @@ pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &P
         let least = scenario.budget.estimated_success_min?;
         Some((least, scenario.uncertainty.clone(), scenario.risk, scenario.risk_extra_hops_max, scenario.search.takeoff))
     };
+    let by_objective = |scenario: &Scenario| {
+        let Scenario { objective, budget, commands, search, hopper, .. } = scenario;
+        scenario.plans_by_objective().then(|| (objective.clone(), *budget, *commands, search.clone(), *hopper.limits()))
+    };
     machine(&a.hopper) == machine(&b.hopper)
+        && by_objective(a) == by_objective(b)
         && a.derating == b.derating
         && estimated(a) == estimated(b)
         && a.body.gravity.m_s2() == b.body.gravity.m_s2()

@@ -110,7 +110,8 @@ fn checked(
         let (answer, path) = searched.answer_with_path(&test, ends, &checked.case);
         // A path of too many hops to list is one all the same.
         let path = path.unwrap_or(None);
-        for warning in path.iter().flat_map(|path| checked.case.scenario.path_warnings(path)) {
+        let of_path = path.iter().flat_map(|path| checked.case.scenario.path_warnings(path));
+        for warning in of_path.chain(searched.warnings) {
             if !checked.warnings.contains(&warning) {
                 checked.warnings.push(warning);
             }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::{Case, JourneyError, SimulateError, dem_ground::dem_ground, journey::Searched, pipeline::planned_over};
 use crate::{
+    ballistics::TakeoffChoice,
     chain::Station,
     graph::{
         self, CostToGo, NodeSet, Outcome, ReliabilityUse, ReliablePath, RiskModel, TakeoffScatter, most_reliable_paths,
@@ -12,38 +13,131 @@ use crate::{
     ground::{DemGround, Surface},
     hop::HopTest,
     path::{HopPath, PathError, generate},
+    planner::{Amount, Amounts, ChainPath, ChainQuestion, LabelCap, Objective, SearchedCommands, front_on_chain},
     progress::Progress,
-    report::{FrontRecord, SuccessBudgetRecord, TotalsRecord, estimate_ci95},
+    report::{FrontRecord, FrontSearchRecord, FrontSuccess, SuccessBudgetRecord, TotalsRecord, estimate_ci95},
     scenario::Scenario,
     uncertainty::{ESTIMATE_TRIALS, Mission, Policy, Simulation, TrialOptions, Uncertainty},
 };
 
-/// The amounts of a front, of which each path improves on one.
+/// A front of hops against another amount, of which each path improves on one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Front {
-    /// Hops against the estimated success.
-    HopsRisk,
+pub struct Front {
+    amount: Amount,
 }
 
 impl Front {
+    /// Hops against the estimated success.
+    pub const HOPS_RISK: Self = Self { amount: Amount::Risk };
+
+    /// Hops against an amount; `None` against hops themselves.
+    pub fn of_hops_against(amount: Amount) -> Option<Self> {
+        (amount != Amount::Hops).then_some(Self { amount })
+    }
+
     /// All of them.
-    pub const ALL: [Self; 1] = [Self::HopsRisk];
+    pub fn all() -> impl Iterator<Item = Self> {
+        Amount::ALL.into_iter().filter_map(Self::of_hops_against)
+    }
+
+    /// The amount against which hops are traded.
+    pub const fn amount(self) -> Amount {
+        self.amount
+    }
 
     /// The amounts, with commas.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::HopsRisk => "hops,risk",
-        }
+    pub fn name(self) -> String {
+        format!("{},{}", Amount::Hops, self.amount)
     }
 }
 
-/// A front of hops against risk for a scenario without errors to fly.
+/// The front of hops against an amount over the nodes of a search, with hops up to those of the budget, or else ten, or half the fewest,
+/// more than the fewest; and the number of its paths that no commands of the machine fly, which it leaves out.
+pub(super) fn amount_front(
+    case: &Case,
+    (test, ends): (&HopTest, (Station, Station)),
+    (searched, amount): (&Searched, Amount),
+    progress: &dyn Progress,
+) -> Result<(Vec<FrontRecord>, FrontSearchRecord, usize), JourneyError> {
+    let (scenario, found) = (&case.scenario, &searched.found);
+    let mut of = FrontSearchRecord { front_amount: amount, front_hops_max: 0, front_labels_capped: false };
+    let Outcome::Path { legs: planned, .. } = &found.outcome else { return Ok((Vec::new(), of, 0)) };
+    let over_same = graph::SearchOptions { spacing: Some(found.spacing), ..scenario.search.clone() };
+    let fewest = graph::search(test, ends.0, ends.1, &over_same, progress)?.hops().unwrap_or(0);
+    let budgets = scenario.total_budgets();
+    of.front_hops_max = scenario.budget.hops_max.map_or_else(|| fewest + (fewest / 2).max(10), u64::from);
+    #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
+    let budgets = budgets.with(Amount::Hops, of.front_hops_max as f64).unwrap_or(budgets);
+    // A choice that is no default was made.
+    let is_chosen = matches!(scenario.search.takeoff, TakeoffChoice::MidRange | TakeoffChoice::LeastTime);
+    let keeps_choice = is_chosen || (scenario.plans_by_objective() && scenario.commands == SearchedCommands::Chosen);
+    let commands = if keeps_choice { SearchedCommands::Chosen } else { SearchedCommands::Distinct };
+    let takeoff = if keeps_choice { scenario.search.takeoff } else { TakeoffChoice::LeastSpeed };
+    let options = graph::SearchOptions { takeoff, ..over_same };
+    let objective = Objective::of(amount);
+    let question =
+        ChainQuestion { objective: &objective, budgets: &budgets, commands, reliability: None, cap: LabelCap::default() };
+    let (paths, capped) = front_on_chain(test, ends, (&options, found.spacing), (amount, &question), progress)?;
+    of.front_labels_capped = capped;
+    let count = paths.len();
+    let row = |path: &ChainPath| {
+        let hops = generate(test, &path.legs, options.takeoff, options.split).ok()?;
+        let amounts = hops.amounts();
+        let same = |(a, b): (&graph::Leg, &graph::Leg)| (a.takeoff, a.landing) == (b.takeoff, b.landing);
+        let only = |wanted: Amount| (amount == wanted).then(|| amounts.of(wanted));
+        Some(FrontRecord {
+            hops: path.cost.hops(),
+            success: None,
+            planned: path.legs.len() == planned.len()
+                && path.legs.iter().zip(planned).all(same)
+                && is_flown_alike(case, test, planned, &amounts),
+            takeoff_speed_sum_m_s: only(Amount::TakeoffSpeed),
+            arc_length_m: only(Amount::ArcLength),
+            totals: TotalsRecord::from(&hops.totals),
+        })
+    };
+    let rows: Vec<_> = paths.iter().filter_map(row).collect();
+    let left_out = count - rows.len();
+    Ok((rows, of, left_out))
+}
+
+/// Whether the path of a plan takes these amounts.
+fn is_flown_alike(case: &Case, test: &HopTest, planned: &[graph::Leg], amounts: &Amounts) -> bool {
+    let options = &case.scenario.search;
+    let alike = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs());
+    generate(test, planned, options.takeoff, options.split).is_ok_and(|path| {
+        let flown = path.amounts();
+        Amount::ALL.into_iter().all(|amount| alike(flown.of(amount), amounts.of(amount)))
+    })
+}
+
+/// Why a scenario has no front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "found no [uncertainty], expected the errors that a front of hops against risk estimates: add deviations above 0, such as \
-     uncertainty.takeoff_speed_sigma_fraction = 0.02 and uncertainty.takeoff_angle_sigma_deg = 1, and uncertainty.goal_tolerance_m"
-)]
-pub struct FrontWithoutErrors;
+pub enum FrontProblem {
+    /// A front of hops against risk for a scenario without errors to fly.
+    #[error(
+        "found no [uncertainty], expected the errors that a front of hops against risk estimates: add deviations above 0, such as \
+         uncertainty.takeoff_speed_sigma_fraction = 0.02 and uncertainty.takeoff_angle_sigma_deg = 1, and uncertainty.goal_tolerance_m"
+    )]
+    NoErrors,
+    /// A front of hops against the mission time for a hopper that bounces.
+    #[error(
+        "found [contact] for a front of hops against mission-time, expected a hopper that stays where it lands: the search does not count \
+         the time of bounces; take flight-time, or remove [contact]"
+    )]
+    Bounces,
+}
+
+impl Front {
+    /// Refuses a scenario that has no such front.
+    pub(super) fn check(self, scenario: &Scenario) -> Result<(), FrontProblem> {
+        match self.amount {
+            Amount::Risk if scenario.uncertainty.is_none() => Err(FrontProblem::NoErrors),
+            Amount::MissionTime if scenario.hopper.limits().restitution.is_some() => Err(FrontProblem::Bounces),
+            _ => Ok(()),
+        }
+    }
+}
 
 /// The front of hops against reliability over the nodes of a search, from the paths that it estimated or from new ones.
 pub(super) fn front(
@@ -73,10 +167,14 @@ pub(super) fn front(
         let hops = journey.generated(path).ok()?;
         Some(FrontRecord {
             hops: path.cost.hops(),
-            success_estimated,
-            success_estimated_ci95: estimate_ci95(success_estimated),
-            trials: ESTIMATE_TRIALS,
-            policy: keys.policy,
+            success: Some(FrontSuccess {
+                success_estimated,
+                success_estimated_ci95: estimate_ci95(success_estimated),
+                trials: ESTIMATE_TRIALS,
+                policy: keys.policy,
+            }),
+            takeoff_speed_sum_m_s: None,
+            arc_length_m: None,
             planned: matches!(&found.outcome, Outcome::Path { legs, .. } if *legs == path.legs),
             totals: TotalsRecord::from(&hops.totals),
         })

@@ -6,6 +6,7 @@ use super::{
     Case, CaseError, SimulateError,
     dem_ground::dem_ground,
     front::{Estimated, FlownJourney},
+    objective::{ByObjective, by_objective},
 };
 use crate::{
     chain::Station,
@@ -17,7 +18,7 @@ use crate::{
     hop::HopTest,
     path::{Hop, HopPath, PathError, TooManyHops},
     progress::Progress,
-    report::{CheckAnswer, DeratingRecord, SigmaMarginsRecord, SuccessBudgetRecord, SuccessEstimate},
+    report::{CheckAnswer, DeratingRecord, ObjectiveRecord, SigmaMarginsRecord, SuccessBudgetRecord, SuccessEstimate},
     scenario::Scenario,
     uncertainty::HopScatter,
     world::FrictionCone,
@@ -63,6 +64,10 @@ pub(super) struct Searched {
     pub(super) reliable_paths: Vec<ReliablePath>,
     /// What the budget of success says of the path, where the scenario has one.
     pub(super) success: Option<SuccessBudgetRecord>,
+    /// What the path was planned for and whether it keeps its budgets, where the scenario plans by objective.
+    pub(super) objective: Option<ObjectiveRecord>,
+    /// What is to be known about a plan by objective.
+    pub(super) warnings: Vec<String>,
     /// The costs by which trials replan, where the choice of the path computed them.
     pub(super) to_go: Option<Arc<CostToGo>>,
     /// The bounds, and the budget of cells.
@@ -84,8 +89,9 @@ impl Searched {
         let options = case.scenario.search.clone();
         let options = BoundsOptions { budget_cells, search: options, explain: true, ..BoundsOptions::default() };
         let bounds = bounds(test, ends.0, ends.1, &options, progress)?;
-        // The bounds are on the fewest hops; the most reliable path may take more.
-        let searched = if weighs_reliability(&case.scenario) && bounds.answer.hops().is_some() {
+        // The bounds are on the fewest hops; the most reliable path, and the best by an objective, may take more.
+        let weighs_more = weighs_reliability(&case.scenario) || case.scenario.plans_by_objective();
+        let searched = if weighs_more && bounds.answer.hops().is_some() {
             search(test, ends, case, progress)?
         } else {
             Self::of(bounds.answer.clone())
@@ -104,7 +110,7 @@ impl Searched {
         if proof.is_some() {
             return pairs.iter().map(|&ends| Self::new(test, ends, case, proof, progress)).collect();
         }
-        if weighs_reliability(&case.scenario) {
+        if weighs_reliability(&case.scenario) || case.scenario.plans_by_objective() {
             return pairs.iter().map(|&ends| search(test, ends, case, progress)).collect();
         }
         let found = graph::search_pairs(test, pairs, &case.scenario.search, progress)?;
@@ -113,7 +119,7 @@ impl Searched {
 
     /// The answer of a search that does not weigh reliability.
     const fn of(found: graph::Answer) -> Self {
-        Self { found, reliable_paths: Vec::new(), success: None, to_go: None, proof: None }
+        Self { found, reliable_paths: Vec::new(), success: None, objective: None, warnings: Vec::new(), to_go: None, proof: None }
     }
 
     /// How reliably the path of the answer is flown, under the policy of the scenario, and how its hops scatter; `None` without errors.
@@ -166,7 +172,10 @@ impl Searched {
             None => answer,
             Some((bounds, budget)) => answer.with_bounds(bounds, *budget),
         };
-        let answer = answer.with_success_budget(self.success).with_derating(DeratingRecord::of(&case.scenario.derating));
+        let answer = answer
+            .with_success_budget(self.success)
+            .with_objective(self.objective.clone())
+            .with_derating(DeratingRecord::of(&case.scenario.derating));
         let Outcome::Path { legs, .. } = &self.found.outcome else { return (answer, Ok(None)) };
         match prepared.path(test, legs, options) {
             Ok(path) => (answer.with_path(Some(&path)), Ok(Some(path))),
@@ -181,7 +190,7 @@ fn weighs_reliability(scenario: &Scenario) -> bool {
     scenario.risk != ReliabilityUse::Ignored
 }
 
-/// Searches for one pair, for the most reliable path if the scenario requests it.
+/// Searches for one pair: by the objective of the scenario, for the most reliable path if it requests that, else for the fewest hops.
 pub(super) fn search(
     test: &HopTest,
     ends: (Station, Station),
@@ -190,6 +199,9 @@ pub(super) fn search(
 ) -> Result<Searched, JourneyError> {
     let scenario = &case.scenario;
     let options = &scenario.search;
+    if let Some(ByObjective { found, record, warnings }) = by_objective(test, ends, case, progress)? {
+        return Ok(Searched { objective: Some(record), warnings, ..Searched::of(found) });
+    }
     let flown = weighs_reliability(scenario) && scenario.uncertainty.is_some();
     let ground = if flown { dem_ground(case).map_err(Box::new)? } else { None };
     let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };

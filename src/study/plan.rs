@@ -6,11 +6,16 @@ use std::{
 };
 
 use super::{
-    Case, CaseError, Commands, Front, FrontWithoutErrors, JourneyError, Proof, SimulateError, dem_ground::dem_ground, front::front,
+    Case, CaseError, Commands, Front, FrontProblem, JourneyError, Proof, SimulateError,
+    dem_ground::dem_ground,
+    front::{amount_front, front},
     journey::Searched,
 };
 #[cfg(feature = "plot")]
-use crate::figure::{Caption, FigureError, FigureInput, FigureTitle, FrontFigure, FrontPoint, Picture, Success, draw, draw_front};
+use crate::figure::{
+    Caption, FigureError, FigureInput, FigureTitle, FrontAgainst, FrontFigure, FrontPoint, FrontValue, Picture, Success, draw,
+    draw_front,
+};
 use crate::{
     chain::Station,
     graph::{self, CostToGo},
@@ -42,9 +47,9 @@ pub enum PlanError {
     /// The case, the search or the proof.
     #[error(transparent)]
     Journey(#[from] JourneyError),
-    /// A front without errors.
+    /// A front that the scenario does not have.
     #[error(transparent)]
-    Front(#[from] FrontWithoutErrors),
+    Front(#[from] FrontProblem),
     /// A path of too many hops to list.
     #[error(transparent)]
     TooManyHops(#[from] TooManyHops),
@@ -119,8 +124,8 @@ pub struct Planned {
 /// [`PlanError`].
 pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Result<Planned, PlanError> {
     let case = case.with_commands(Commands::OfTheMachine)?;
-    if options.front.is_some() && case.scenario.uncertainty.is_none() {
-        return Err(FrontWithoutErrors.into());
+    if let Some(front) = options.front {
+        front.check(&case.scenario)?;
     }
     let (test, ends) = (case.hop_test(), case.ends()?);
     let searched = Searched::new(&test, ends, &case, options.proof, progress)?;
@@ -131,6 +136,7 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
         Defect::unless_passed(&case.planning().execute(path, ends))?;
     }
     let mut warnings = path.as_ref().map(|path| case.scenario.path_warnings(path)).unwrap_or_default();
+    warnings.extend(searched.warnings.iter().cloned());
     let flown = path.as_ref().filter(|_| options.estimate);
     let estimate = flown.map(|path| searched.success_estimate(&test, ends, &case, path, progress)).transpose()?.flatten();
     let mut hops = path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default();
@@ -139,9 +145,20 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
         (hop.margins_sigma, hop.success_estimated) = (Some(*margins), Some(*success));
     }
     let estimate = estimate.map(|estimate| estimate.success);
+    let mut front_search = None;
     let front = match options.front {
         None => None,
-        Some(Front::HopsRisk) => {
+        Some(wanted) if wanted != Front::HOPS_RISK => {
+            let (rows, of, left_out) = amount_front(&case, (&test, ends), (&searched, wanted.amount()), progress)?;
+            if left_out > 0 {
+                warnings.push(format!(
+                    "the front leaves out {left_out} paths: they have too many hops to list, or no commands in the machine's steps fly them"
+                ));
+            }
+            front_search = Some(of);
+            Some(rows)
+        }
+        Some(_) => {
             warnings.extend(case.scenario.uncertainty.as_ref().and_then(UncertaintyKeys::warning).map(str::to_owned));
             Some(front(&case, (&test, ends), &searched, progress)?)
         }
@@ -153,6 +170,7 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
         totals: path.as_ref().map(|path| TotalsRecord { estimate, ..TotalsRecord::from(&path.totals) }),
         reliable_paths: ReliablePathRecord::rows(&searched.reliable_paths),
         front,
+        front_search,
     };
     Ok(Planned { case, test, ends, found: searched.found, path, answer, warnings, to_go: searched.to_go })
 }
@@ -219,17 +237,41 @@ impl Planned {
         let mut line = vec![format!("from x = {:.3} m to x = {:.3} m", self.ends.0.point.x_m, self.ends.1.point.x_m)];
         line.extend(scenario.body.name.clone());
         line.extend(SpeedLimit::stated(&scenario.hopper).map(|limit| limit.to_string()));
+        if let Some(of) = &self.answer.front_search {
+            let amount = of.front_amount;
+            let point = |row: &crate::report::FrontRecord| FrontPoint {
+                hops: row.hops,
+                value: FrontValue::Total(row.of(amount)),
+                planned: row.planned,
+            };
+            let most = scenario.total_budgets().most(amount);
+            line.push(format!("up to {} hops, over the distinct commands of every hop", of.front_hops_max));
+            return Some(draw_front(&FrontFigure {
+                caption: Caption::new(title(&format!("Hops against {}", amount.words()), scenario), line.join(", ")),
+                points: front.iter().map(point).collect(),
+                against: FrontAgainst::Total {
+                    words: amount.words(),
+                    unit: amount.unit(),
+                    most: Some(most).filter(|most| most.is_finite()),
+                },
+            }));
+        }
         line.extend(
-            front.first().map(|first| format!("each path estimated by {} fixed trials, policy {}", first.trials, first.policy)),
+            front
+                .first()
+                .and_then(|first| first.success)
+                .map(|first| format!("each path estimated by {} fixed trials, policy {}", first.trials, first.policy)),
         );
         let point = |row: &crate::report::FrontRecord| {
-            let [low, high] = row.success_estimated_ci95;
-            FrontPoint { hops: row.hops, success: Success { rate: row.success_estimated, low, high }, planned: row.planned }
+            let success = row.success?;
+            let [low, high] = success.success_estimated_ci95;
+            let value = FrontValue::Success(Success { rate: success.success_estimated, low, high });
+            Some(FrontPoint { hops: row.hops, value, planned: row.planned })
         };
         Some(draw_front(&FrontFigure {
             caption: Caption::new(title("Hops against reliability", scenario), line.join(", ")),
-            points: front.iter().map(point).collect(),
-            success_min: scenario.budget.estimated_success_min,
+            points: front.iter().filter_map(point).collect(),
+            against: FrontAgainst::Success { least: scenario.budget.estimated_success_min },
         }))
     }
 }

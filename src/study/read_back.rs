@@ -129,6 +129,7 @@ impl Planned {
             totals,
             reliable_paths: Vec::new(),
             front: None,
+            front_search: None,
         };
         Ok(Self { case, test, ends, found, path, answer, warnings, to_go: None })
     }

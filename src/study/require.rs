@@ -1,6 +1,11 @@
 //! The least capability with which the goal can be reached.
 
-use super::{Case, CaseError, Commands, JourneyError, Variation, ask_the_same, journey, require_success::SuccessSearch};
+use super::{
+    Case, CaseError, Commands, JourneyError, Variation, ask_the_same,
+    journey::{self, Searched},
+    require_success::SuccessSearch,
+    value_scan::ValueScan,
+};
 use crate::{
     chain::Station,
     graph::{
@@ -10,7 +15,10 @@ use crate::{
     path::generate,
     progress::{Cancelled, Progress},
     quantity::Angle,
-    report::{DeratingRecord, GapRecord, HopRecord, RequireAnswer, RequireTry, SuccessBudgetRecord, TotalsRecord},
+    report::{
+        BudgetsTry, DeratingRecord, GapRecord, HopRecord, ObjectiveRecord, RequireAnswer, RequireBudgetsRecord, RequireTry,
+        SuccessBudgetRecord, TotalsRecord,
+    },
     scenario::{Entries, Key, Kind, Scenario, ScenarioProblem},
 };
 
@@ -294,7 +302,7 @@ pub struct Required {
 /// first case of the variation is that of [`Requirement::strongest`].
 ///
 /// Of a scenario with a budget of success: the least capable value found whose estimated success is enough. Nothing is proved then, since
-/// success need not grow with a capability: nine values are scanned, then the first that is enough and the one before are brought together,
+/// success need not grow with a capability; so of a scenario with an objective or budgets of totals. Nine values are scanned, then the first that is enough and the one before are brought together,
 /// on the same draws at every value.
 ///
 /// # Errors
@@ -319,6 +327,9 @@ pub fn require(variation: &Variation, requirement: &Requirement, progress: &dyn 
     }
     if let Some(wanted) = wanted {
         return require_success(variation, requirement, (range, wanted), progress);
+    }
+    if first.scenario.plans_by_objective() {
+        return require_budgets(variation, requirement, range, progress);
     }
     let mut tries: Vec<Tried> = Vec::new();
     let mut verdict_at = |value| {
@@ -345,6 +356,7 @@ pub fn require(variation: &Variation, requirement: &Requirement, progress: &dyn 
         path: Vec::new(),
         totals: None,
         success: None,
+        within_budgets: None,
         derating: DeratingRecord::of(&first.scenario.derating),
         gap: at(threshold.unreachable_at).map(|tried| tried.gap(requirement, progress)).transpose()?.flatten(),
     };
@@ -391,6 +403,7 @@ fn require_success(
         path: Vec::new(),
         totals: None,
         success: Some(search.record()),
+        within_budgets: None,
         derating: DeratingRecord::of(&first.scenario.derating),
         gap: None,
     };
@@ -411,6 +424,68 @@ fn require_success(
         answer,
         warnings: first.prepared.warnings.clone(),
     })
+}
+
+/// The least capable value with a path within the budgets.
+fn require_budgets(
+    variation: &Variation,
+    requirement: &Requirement,
+    range: CapabilityRange,
+    progress: &dyn Progress,
+) -> Result<Required, RequireError> {
+    let Requirement { capability, resolution, .. } = requirement;
+    let first = &variation.first;
+    let ends = first.ends()?;
+    let mut scan: ValueScan<Searched> = ValueScan::new(range);
+    let mut attempt = |value: f64| {
+        let case = requirement.at(variation, value)?;
+        Ok::<_, RequireError>(journey::search(&case.hop_test(), ends, &case, progress)?)
+    };
+    let within =
+        |searched: &Searched| searched.found.hops().is_some() && searched.objective.as_ref().is_none_or(ObjectiveRecord::is_met);
+    scan.run(&mut attempt, &[(&within, 1.0)], progress)?;
+    let reached = scan.first(&within).and_then(|at| scan.tries.get(at));
+    let value = reached.map_or(range.strongest, |(value, _)| *value);
+    let shown = requirement.at(variation, value)?;
+    let (mut path, mut totals) = (Vec::new(), None);
+    let options = &shown.scenario.search;
+    if let Some(Outcome::Path { legs, .. }) = reached.map(|(_, searched)| &searched.found.outcome)
+        && let Ok(flown) = generate(&shown.hop_test(), legs, options.takeoff, options.split)
+    {
+        path = HopRecord::rows(&flown, shown.prepared.projection.as_ref());
+        totals = Some(TotalsRecord::from(&flown.totals));
+    }
+    let record = RequireBudgetsRecord {
+        at: reached.and_then(|(_, searched)| searched.objective.clone()),
+        within_from_there_on: scan.tries.is_sorted_by(|(_, a), (_, b)| within(a) <= within(b)),
+        tries: scan
+            .tries
+            .iter()
+            .map(|(value, searched)| BudgetsTry::new(*value, searched.found.hops(), searched.objective.as_ref()))
+            .collect(),
+    };
+    let answer = RequireAnswer {
+        start_x_m: ends.0.point.x_m,
+        goal_x_m: ends.1.point.x_m,
+        vary: capability.path.to_owned(),
+        unreachable_at: None,
+        reachable_at: reached.map(|(value, _)| *value),
+        from: range.weakest.min(range.strongest),
+        to: range.weakest.max(range.strongest),
+        resolution: *resolution,
+        resolution_met: scan.is_met(&within),
+        never_binds: false,
+        tries: Vec::new(),
+        hops: reached.and_then(|(_, searched)| searched.found.hops()),
+        path,
+        totals,
+        success: None,
+        within_budgets: Some(record),
+        derating: DeratingRecord::of(&first.scenario.derating),
+        gap: None,
+    };
+    let shown_entries = requirement.with_value(&variation.entries, value);
+    Ok(Required { shown, shown_entries, answer, warnings: first.prepared.warnings.clone() })
 }
 
 /// The hops and the estimated success of a case's path; `None` without a path.

@@ -1,13 +1,11 @@
 //! The search for the least capable value with enough success: a scan, then bisections.
 
+use super::value_scan::ValueScan;
 use crate::{
     graph::proof::CapabilityRange,
-    progress::{Cancelled, Detail, Meter, Progress, Stage},
+    progress::{Cancelled, Progress},
     report::{RequireSuccessRecord, SuccessBudgetRecord, SuccessTry},
 };
-
-/// The values of the scan. More of them miss fewer islands of success.
-const SCANNED: u32 = 9;
 
 /// How many times as far apart the ends of the interval of values may be known: they tell how uncertain the value is, and need fewer tries.
 const COARSER: f64 = 8.0;
@@ -15,10 +13,8 @@ const COARSER: f64 = 8.0;
 /// What is known of the success by value.
 #[derive(Clone, Debug)]
 pub(super) struct SuccessSearch {
-    range: CapabilityRange,
     wanted: f64,
-    /// From the least capable value to the most capable one.
-    tries: Vec<SuccessTry>,
+    scan: ValueScan<SuccessTry>,
 }
 
 /// What is asked of an estimate.
@@ -34,7 +30,7 @@ enum Enough {
 
 impl SuccessSearch {
     pub(super) const fn new(range: CapabilityRange, wanted: f64) -> Self {
-        Self { range, wanted, tries: Vec::new() }
+        Self { wanted, scan: ValueScan::new(range) }
     }
 
     /// Scans, then brings together the first value that is enough and the one before it; and so for both ends of the estimate's interval.
@@ -46,78 +42,56 @@ impl SuccessSearch {
         estimate: &mut dyn FnMut(f64) -> Result<Option<SuccessBudgetRecord>, E>,
         progress: &dyn Progress,
     ) -> Result<(), E> {
-        let meter = Meter::new(progress, Stage::Requirement);
-        meter.report(Detail::None)?;
-        let mut attempt = |search: &mut Self, value: f64| {
-            let found = SuccessTry::new(value, estimate(value)?.as_ref());
-            let at = search.tries.partition_point(|tried| search.is_weaker(tried.value, value));
-            search.tries.insert(at, found);
-            meter.complete_one()?;
-            Ok::<(), E>(())
-        };
-        for i in 0..SCANNED {
-            attempt(self, self.range.at_share(f64::from(i) / f64::from(SCANNED - 1)))?;
-        }
-        for (enough, coarser) in [(Enough::Estimate, 1.0), (Enough::High, COARSER), (Enough::Low, COARSER)] {
-            let range = CapabilityRange { resolution: self.range.resolution * coarser, ..self.range };
-            while let Some((low, high)) = self.bracket(enough).filter(|&(low, high)| !range.is_close(low, high)) {
-                attempt(self, range.middle(low, high))?;
-            }
-        }
-        Ok(())
-    }
-
-    fn is_weaker(&self, a: f64, b: f64) -> bool {
-        if self.range.weakest < self.range.strongest { a < b } else { a > b }
-    }
-
-    fn is_enough(&self, tried: &SuccessTry, enough: Enough) -> bool {
-        let [low, high] = tried.success_estimated_ci95;
-        let success = match enough {
-            Enough::High => high,
-            Enough::Estimate => tried.success_estimated,
-            Enough::Low => low,
-        };
-        tried.hops.is_some() && success >= self.wanted
+        let wanted = self.wanted;
+        let by = |enough: Enough| move |tried: &SuccessTry| is_enough(tried, wanted, enough);
+        let [by_estimate, by_high, by_low] = [Enough::Estimate, Enough::High, Enough::Low].map(by);
+        let mut attempt = |value: f64| Ok(SuccessTry::new(value, estimate(value)?.as_ref()));
+        self.scan.run(&mut attempt, &[(&by_estimate, 1.0), (&by_high, COARSER), (&by_low, COARSER)], progress)
     }
 
     /// The place of the least capable value that is enough.
     fn first(&self, enough: Enough) -> Option<usize> {
-        self.tries.iter().position(|tried| self.is_enough(tried, enough))
-    }
-
-    /// The values just before and at the least capable one that is enough.
-    fn bracket(&self, enough: Enough) -> Option<(f64, f64)> {
-        let first = self.first(enough)?;
-        Some((self.tries.get(first.checked_sub(1)?)?.value, self.tries[first].value))
+        self.scan.first(&|tried| is_enough(tried, self.wanted, enough))
     }
 
     /// The least capable value that is enough.
     pub(super) fn least(&self) -> Option<&SuccessTry> {
-        self.tries.get(self.first(Enough::Estimate)?)
+        self.scan.tries.get(self.first(Enough::Estimate)?).map(|(_, tried)| tried)
     }
 
     /// Whether that value and the one before are within the resolution, or the whole range is decided.
     pub(super) fn is_met(&self) -> bool {
-        self.bracket(Enough::Estimate).is_none_or(|(low, high)| self.range.is_close(low, high))
+        self.scan.is_met(&|tried| is_enough(tried, self.wanted, Enough::Estimate))
     }
 
     /// All as plain data.
     pub(super) fn record(&self) -> RequireSuccessRecord {
         // Below the first value whose upper end is enough lies one that is not.
-        let from = self.first(Enough::High).map(|first| self.tries[first.saturating_sub(1)].value);
-        let to = self.first(Enough::Low).map(|first| self.tries[first].value);
-        let enough = |tried: &SuccessTry| self.is_enough(tried, Enough::Estimate);
+        let tries: Vec<SuccessTry> = self.scan.tries.iter().map(|(_, tried)| *tried).collect();
+        let from = self.first(Enough::High).map(|first| tries[first.saturating_sub(1)].value);
+        let to = self.first(Enough::Low).map(|first| tries[first].value);
+        let enough = |tried: &SuccessTry| is_enough(tried, self.wanted, Enough::Estimate);
         RequireSuccessRecord {
             success_min: self.wanted,
             at: self.least().copied(),
             uncertain_from: from,
             uncertain_to: to,
-            monotone: self.tries.is_sorted_by(|a, b| enough(a) <= enough(b) && a.success_estimated <= b.success_estimated),
-            enough_from_there_on: self.tries.is_sorted_by(|a, b| enough(a) <= enough(b)),
-            tries: self.tries.clone(),
+            monotone: tries.is_sorted_by(|a, b| enough(a) <= enough(b) && a.success_estimated <= b.success_estimated),
+            enough_from_there_on: tries.is_sorted_by(|a, b| enough(a) <= enough(b)),
+            tries,
         }
     }
+}
+
+/// Whether a try is enough.
+fn is_enough(tried: &SuccessTry, wanted: f64, enough: Enough) -> bool {
+    let [low, high] = tried.success_estimated_ci95;
+    let success = match enough {
+        Enough::High => high,
+        Enough::Estimate => tried.success_estimated,
+        Enough::Low => low,
+    };
+    tried.hops.is_some() && success >= wanted
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ use crate::{
     hop::HopTest,
     path::HopPath,
     progress::{Cancelled, Detail, Meter, Progress, Stage, Step},
-    report::{EffortRecord, MarginsRecord, SweptKeyRecord, TotalsRecord, TradeAnswer, TradeRow},
+    report::{EffortRecord, MarginsRecord, ObjectiveRecord, SweptKeyRecord, TotalsRecord, TradeAnswer, TradeRow},
     scenario::{Entries, Key, Kind, Scenario, ScenarioProblem, fits, nearest_key},
 };
 
@@ -403,11 +403,13 @@ impl<'a> Trade<'a> {
         let distance_m = (ends.1.point.x_m - ends.0.point.x_m).abs();
         let test = case.hop_test();
         let (mut answer, mut found) = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter)?;
-        let mut success_budget = None;
-        if scenario.budget.estimated_success_min.is_some() && answer.hops.is_some() {
+        let (mut success_budget, mut objective) = (None, None);
+        let chooses = scenario.budget.estimated_success_min.is_some() || scenario.plans_by_objective();
+        if chooses && answer.hops.is_some() {
             let searched = journey::search(&test, ends, &case, &Unreported(meter))?;
-            (found, success_budget) = (searched.found, searched.success);
-            answer.hops = found.hops().filter(|_| success_budget.is_none_or(|budget| budget.met));
+            (found, success_budget, objective) = (searched.found, searched.success, searched.objective);
+            let met = success_budget.is_none_or(|budget| budget.met) && objective.as_ref().is_none_or(ObjectiveRecord::is_met);
+            answer.hops = found.hops().filter(|_| met);
             if answer.hops.is_none() {
                 answer.verdict = ProofVerdict::Open;
             }
@@ -434,6 +436,7 @@ impl<'a> Trade<'a> {
                 Outcome::Path { .. } | Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
             },
             success_budget,
+            by_objective: objective,
             error: None,
         })
     }

@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 84] = [
+const TELLING: [(&str, &str); 91] = [
     ("body.name", "moon"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -68,6 +68,13 @@ const TELLING: [(&str, &str); 84] = [
     ("search.split", "equal"),
     ("search.risk", "fewest-hops"),
     ("search.risk_extra_hops_max", "2"),
+    ("search.objective", "[\"distance\", \"energy\"]"),
+    ("budget.hops_max", "2"),
+    ("budget.mission_time_max_s", "3"),
+    ("budget.flight_time_total_max_s", "3"),
+    ("budget.energy_max_j_kg", "2"),
+    ("budget.energy_max_j", "2"),
+    ("budget.delta_v_max_m_s", "2"),
     ("budget.estimated_success_min", "1"),
     ("derating.takeoff_speed", "0.5"),
     ("derating.landing_speed", "0.5"),

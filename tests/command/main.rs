@@ -27,6 +27,7 @@ mod maps_command;
 mod measured_errors;
 mod mesh_command;
 mod missing_data;
+mod objective;
 mod picture_files;
 #[cfg(unix)]
 mod pipes;

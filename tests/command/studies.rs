@@ -8,7 +8,7 @@ use assert_cmd::Command;
 use chta::{
     chain::csv::StartGoal,
     graph::proof::DEFAULT_BUDGET_CELLS,
-    report::{DocumentKind, TotalsRecord},
+    report::{DocumentKind, FrontRecord, TotalsRecord},
     scenario::{Entries, Scenario},
     study::{
         Case, CaseError, CheckError, Commands, ExperimentError, Front, HopError, JourneyEnd, PlanError, PlanOptions, Proof,
@@ -189,7 +189,7 @@ fn experiments_answer_as_the_command() {
 /// Each row improves on those with fewer hops, and one of them is the path of the plan where the scenario weighs risk.
 #[test]
 fn fronts_answer_as_the_command_and_improve_strictly() {
-    let options = PlanOptions { front: Some(Front::HopsRisk), estimate: true, ..PlanOptions::default() };
+    let options = PlanOptions { front: Some(Front::HOPS_RISK), estimate: true, ..PlanOptions::default() };
     // The settings, and whether the plan is a path of the front.
     let cases: [(&[&str], bool); 4] = [
         (&[], true),
@@ -211,13 +211,15 @@ fn fronts_answer_as_the_command_and_improve_strictly() {
         let front = planned.answer.front.as_deref().unwrap();
         assert!(front.len() > 1, "{settings:?}: {front:?}");
         for pair in front.windows(2) {
-            let improves = pair[0].hops < pair[1].hops && pair[0].success_estimated < pair[1].success_estimated;
+            let success = |row: &FrontRecord| row.success.unwrap().success_estimated;
+            let improves = pair[0].hops < pair[1].hops && success(&pair[0]) < success(&pair[1]);
             assert!(improves, "{settings:?}: {pair:?}");
         }
         for row in front {
-            let [low, high] = row.success_estimated_ci95;
-            assert!(low <= row.success_estimated && row.success_estimated <= high && row.trials == 512, "{row:?}");
-            assert_eq!(row.policy, case.scenario.uncertainty.as_ref().unwrap().policy);
+            let success = row.success.unwrap();
+            let [low, high] = success.success_estimated_ci95;
+            assert!(low <= success.success_estimated && success.success_estimated <= high && success.trials == 512, "{row:?}");
+            assert_eq!(success.policy, case.scenario.uncertainty.as_ref().unwrap().policy);
         }
         let chosen: Vec<_> = front.iter().filter(|row| row.planned).collect();
         assert_eq!(chosen.len(), usize::from(is_on_it), "{settings:?}: {front:?}");

@@ -48,6 +48,7 @@ mod mutations_terrain;
 mod new_limit;
 mod paper;
 mod pds3;
+mod planner;
 mod progress;
 mod proof;
 mod proof_terrain;

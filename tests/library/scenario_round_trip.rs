@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use chta::planner::Amount;
 use chta::scenario::{CATALOGUE, Entries, Key, Kind, Scenario, scenario_document};
 use proptest::{prelude::*, strategy::ValueTree};
 
@@ -55,6 +56,10 @@ fn value(key: &Key) -> BoxedStrategy<String> {
                 format!("[{}]", speeds.join(", "))
             })
             .boxed(),
+        Kind::Amounts => proptest::sample::subsequence(Amount::ALL[..9].to_vec(), 1..4)
+            .prop_shuffle()
+            .prop_map(|amounts| format!("{:?}", amounts.iter().map(|amount| amount.name()).collect::<Vec<_>>()))
+            .boxed(),
         Kind::NumberOrNone => {
             prop_oneof![Just("\"none\"".to_owned()), Just("\"-3.40282e+38\"".to_owned()), number(-1e6, 1e6)].boxed()
         }
@@ -86,13 +91,17 @@ fn toml() -> impl Strategy<Value = String> {
             ("terrain", _) => ground > 0,
             ("surface", "friction_coefficient") | ("derating", "friction") => friction,
             ("surface", "takeoff_from_slope_deg" | "landing_from_slope_deg") => !friction,
-            // Both or neither; a heading error only on a raster.
-            ("uncertainty", "height_sigma_m" | "height_correlation_m") => degrees,
+            // Both or neither; a heading error only on a raster. An objective or a budget of totals excludes an effort, a weighing of risk,
+            // a budget of success, and bounces beside a mission time.
+            ("uncertainty", "height_sigma_m" | "height_correlation_m") | ("search", "risk") | ("contact", _) => degrees,
             ("uncertainty", "heading_sigma_deg" | "heading_bias_sigma_deg") => ground < 2,
-            // A budget of success without errors, and shares that leave too little for other keys, are refused.
-            ("budget", _) => degrees && !points,
+            // A budget of success without errors, an energy without a mass, and shares that leave too little for other keys, are refused.
+            ("budget", "estimated_success_min") => degrees && !points,
+            ("search", "objective") => points && !degrees && friction,
+            ("search", "effort") => !(points && !degrees && friction),
+            ("budget", "energy_max_j") | ("search", "risk_extra_hops_max") => false,
+            ("budget", _) => !degrees,
             ("derating", "landing_speed") => points && degrees,
-            ("search", "risk_extra_hops_max") => false,
             ("search", "points_per_segment")
             | ("derating", "takeoff_speed")
             | ("hopper", "roughness_max_m" | "takeoff_speed_max_m_s") => points,
@@ -186,6 +195,7 @@ fn every_key_reaches_the_document() {
         Kind::Flag => "true",
         Kind::NumberOrNone => "-9999.5",
         Kind::Speeds => "[2.0, 4.5]",
+        Kind::Amounts => "[\"energy\", \"hops\"]",
         Kind::MapPoints | Kind::LonLats => "[[12.5, -3.0], [1.0, 2.0]]",
         Kind::CountOrAuto | Kind::Count { .. } => "7",
         Kind::Word(words) => words[words.len() - 1],
@@ -196,7 +206,7 @@ fn every_key_reaches_the_document() {
         let mut entries = Entries::from_toml("body.gravity_m_s2 = 1\n");
         let mut with = |table: &str, name: &str, value: &str| entries.set("test", &format!("{table}.{name}={value}"));
         match (key.table, key.name) {
-            ("budget", _) => with("uncertainty", "goal_tolerance_m", "1"),
+            ("budget", "estimated_success_min") => with("uncertainty", "goal_tolerance_m", "1"),
             ("surface", "takeoff_from_slope_deg") => with("surface", "landing_from_slope_deg", "[1, 2]"),
             ("surface", "landing_from_slope_deg") => with("surface", "takeoff_from_slope_deg", "[1, 2]"),
             ("terrain", "dem" | "start_m" | "goal_m" | "via_m" | "via_lonlat_deg") => {
@@ -217,7 +227,7 @@ fn every_key_reaches_the_document() {
             ("terrain", "start_x_m" | "goal_x_m") => with("terrain", "chain", "x.csv"),
             ("hopper", "landing") => with("hopper", "touchdown_speed_m_s", "1"),
             ("hopper", "touchdown_speed_m_s") => with("hopper", "landing", "braked"),
-            ("hopper", "isp_s" | "preparation_energy_j") => with("hopper", "mass_kg", "50"),
+            ("hopper", "isp_s" | "preparation_energy_j") | ("budget", "energy_max_j") => with("hopper", "mass_kg", "50"),
             ("hopper", "propellant_max_kg") => {
                 with("hopper", "mass_kg", "50");
                 with("hopper", "isp_s", "200");

@@ -116,8 +116,9 @@ pub(crate) struct PlanArgs {
     /// Fly the path again by direct simulation and check every limit
     #[arg(long)]
     pub(crate) verify: bool,
-    /// Front of two amounts over the same nodes: hops,risk, the most reliable path for every number of hops, with its success
-    /// estimated by 512 fixed trials under the scenario's policy; needs [uncertainty] [default: none]
+    /// Front of hops against an amount over the same nodes: hops,energy and the like, the least of it for every number of hops; hops,risk
+    /// the most reliable path, with its success estimated by 512 fixed trials under the scenario's policy, which needs [uncertainty]
+    /// [default: none]
     #[arg(long, value_name = "AMOUNTS")]
     pub(crate) front: Option<String>,
     /// Picture of the front (SVG or PNG) to write
@@ -217,6 +218,18 @@ pub(crate) struct RequireArgs {
     /// `[uncertainty]` and `[derating]` can then be varied [default: the scenario's `budget.estimated_success_min`, else any]
     #[arg(long, value_name = "P", allow_negative_numbers = true)]
     pub(crate) success_min: Option<f64>,
+    /// Most hops: the least value with a path within these budgets [default: the scenario's `budget.hops_max`, else any]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) hops_max: Option<i64>,
+    /// Longest mission, from the first preparation to the last landing [default: the scenario's `budget.mission_time_max_s`, else any]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(crate) mission_time_max_s: Option<f64>,
+    /// Most energy per unit mass, from the store [default: the scenario's `budget.energy_max_j_kg`, else any]
+    #[arg(long, value_name = "J", allow_negative_numbers = true)]
+    pub(crate) energy_max_j_kg: Option<f64>,
+    /// Most delta-v [default: the scenario's `budget.delta_v_max_m_s`, else any]
+    #[arg(long, value_name = "DV", allow_negative_numbers = true)]
+    pub(crate) delta_v_max_m_s: Option<f64>,
     /// How close to bring the two values, as a fraction of them
     #[arg(long, value_name = "SHARE", default_value_t = 0.001, allow_negative_numbers = true)]
     pub(crate) resolution: f64,
@@ -295,9 +308,19 @@ pub(crate) struct CompareArgs {
 }
 
 impl RequireArgs {
-    /// The scenario key set by an option of its own.
+    /// The scenario keys set by options of their own.
     pub(crate) fn own_keys(&self) -> Vec<OwnKey<'static>> {
-        self.success_min.map(|least| ("--success-min", "budget", "estimated_success_min", least.into())).into_iter().collect()
+        let number = |option, name, value: Option<f64>| value.map(|value| (option, "budget", name, value.into()));
+        [
+            number("--success-min", "estimated_success_min", self.success_min),
+            self.hops_max.map(|most| ("--hops-max", "budget", "hops_max", most.into())),
+            number("--mission-time-max-s", "mission_time_max_s", self.mission_time_max_s),
+            number("--energy-max-j-kg", "energy_max_j_kg", self.energy_max_j_kg),
+            number("--delta-v-max-m-s", "delta_v_max_m_s", self.delta_v_max_m_s),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
 }
 
@@ -305,9 +328,9 @@ impl PlanArgs {
     /// The front by its amounts.
     pub(crate) fn front(&self) -> Result<Option<Front>, Failure> {
         let Some(given) = self.front.as_deref() else { return Ok(None) };
-        let found = Front::ALL.into_iter().find(|front| front.name() == given);
-        let possible = || Front::ALL.map(Front::name).join(", or ");
-        let none = || Failure::message(format!("--front: found '{given}', expected {}: no other front is planned yet", possible()));
+        let found = Front::all().find(|front| front.name() == given);
+        let possible = || Front::all().map(Front::name).collect::<Vec<_>>().join(" or ");
+        let none = || Failure::message(format!("--front: found '{given}', expected {}: hops first, then one amount", possible()));
         found.ok_or_else(none).map(Some)
     }
 }

@@ -148,24 +148,58 @@ pub struct ConeWidthPoint {
     pub errors: ErrorQuantiles,
 }
 
-/// Paths of increasing hops and increasing success.
+/// Paths of increasing hops and increasing success, or a decreasing amount.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrontFigure {
     /// The caption.
     pub caption: Caption,
     /// One for each path, in ascending order of hops.
     pub points: Vec<FrontPoint>,
-    /// The least success wanted, 0 to 1; `None`: any.
-    pub success_min: Option<f64>,
+    /// What hops are traded against.
+    pub against: FrontAgainst,
+}
+
+/// What hops are traded against on a front.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FrontAgainst {
+    /// The estimated success, with the least wanted, 0 to 1; `None`: any.
+    Success {
+        /// The least wanted.
+        least: Option<f64>,
+    },
+    /// The total of an amount.
+    Total {
+        /// What it is.
+        words: &'static str,
+        /// Its unit.
+        unit: &'static str,
+        /// The greatest total allowed; `None`: any.
+        most: Option<f64>,
+    },
+}
+
+impl Default for FrontAgainst {
+    fn default() -> Self {
+        Self::Success { least: None }
+    }
+}
+
+/// Where a path of a front lies beside its hops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FrontValue {
+    /// Its estimated success.
+    Success(Success),
+    /// A total, in the unit of the front.
+    Total(f64),
 }
 
 /// A path of a front.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrontPoint {
     /// Its hops.
     pub hops: u64,
-    /// Its estimated success.
-    pub success: Success,
+    /// Its success or its total.
+    pub value: FrontValue,
     /// Whether it is the path of the plan.
     pub planned: bool,
 }

@@ -16,8 +16,9 @@ mod sensitivity;
 mod tests;
 
 pub use data::{
-    ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, FrontFigure, FrontPoint,
-    LandingBoxes, LandingErrorFigure, OutcomeBars, SensitivityBar, SensitivityFigure, SimulationFigure, Success,
+    ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, FrontAgainst, FrontFigure,
+    FrontPoint, FrontValue, LandingBoxes, LandingErrorFigure, OutcomeBars, SensitivityBar, SensitivityFigure, SimulationFigure,
+    Success,
 };
 
 use super::{

@@ -4,6 +4,7 @@ use crate::{
     ballistics::TakeoffChoice,
     graph::ReliabilityUse,
     path::Hop,
+    planner::Amount,
     quantity::format_number,
     report::AdviceRecord,
     study::Planned,
@@ -79,7 +80,15 @@ impl Advisor<'_> {
     }
 
     fn risk(&self) -> Option<AdviceRecord> {
-        let risk = self.planned.case.scenario.risk;
+        let scenario = &self.planned.case.scenario;
+        if scenario.plans_by_objective() {
+            let objective = scenario.full_objective();
+            let reason = "a path of least amounts stands on the edge of its limits: without an objective and budgets of totals the plan \
+                          weighs reliability";
+            return (!objective.amounts().contains(&Amount::Risk))
+                .then(|| record("search.objective", objective.to_string(), None, reason));
+        }
+        let risk = scenario.risk;
         (risk != ReliabilityUse::Traded).then(|| {
             let reason =
                 "more hops, each farther from its limits; without search.takeoff_angle the angles are then the most reliable";
