@@ -176,9 +176,9 @@ fn contradictions_of_success_and_derating_are_refused() {
             &["search.risk = \"ignored\"", "set risk = \"traded\""],
         ),
         (&["plan", "level.toml", "--set", "budget.estimated_success_min=1.5"], &["estimated_success_min is 1.5", "from 0 to 1"]),
-        (&["plan", "level.toml", "--set", "budget.hops_max=3"], &["budget.hops_max", "estimated_success_min"]),
+        (&["plan", "level.toml", "--set", "budget.hops_max=3"], &["search.risk = \"fewest-hops\"", "remove risk"]),
         (&["plan", "scenario.toml", "--front", "hops,risk"], &["--front", "found no [uncertainty]", "goal_tolerance_m"]),
-        (&["plan", "level.toml", "--front", "hops,energy"], &["--front", "found 'hops,energy'", "expected hops,risk"]),
+        (&["plan", "level.toml", "--front", "hops,fuel"], &["--front", "found 'hops,fuel'", "or hops,risk or"]),
         (&["plan", "level.toml", "--plot-front", "front.svg"], &["--front"]),
         (
             &["require", "level.toml", "--quiet", "--vary", "uncertainty.goal_tolerance_m"],
