@@ -27,6 +27,7 @@ mod refusals;
 mod reliability;
 mod reliability_policy;
 mod search;
+mod successors;
 mod thinned;
 mod usable;
 

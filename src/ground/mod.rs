@@ -16,6 +16,7 @@ mod dem;
 mod dem_flight;
 mod first_contact;
 mod height_field;
+mod hop_reach;
 mod posts;
 mod surface;
 mod sweep;
@@ -25,6 +26,7 @@ pub use chain_flight::{ChainGround, ChainPosition};
 pub use dem::{DemGround, MapPosition, SliceProblem};
 pub use first_contact::{ContactFailure, FirstContact, Flight, LiftoffVelocity, Realization, TouchdownState};
 pub use height_field::HeightField;
+pub(crate) use hop_reach::HopReach;
 pub(crate) use posts::Offset;
 pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostHopsSize, PostRefusal};
 #[cfg(test)]

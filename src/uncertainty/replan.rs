@@ -2,17 +2,15 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector2;
-
 use crate::{
-    ballistics::{self, LineOfSight, TakeoffChoice},
+    ballistics::{self, TakeoffChoice},
     flight::Command,
     graph::{Cost, CostToGo, Edge},
-    ground::{ChainGround, ChainPosition, DemGround, MapPosition, Surface, heading_of},
+    ground::{ChainGround, ChainPosition, DemGround, HopReach, MapPosition, Surface, heading_of},
     hop::HopTest,
     path::{SteppedGround, nearest_command},
     quantity::NodeId,
-    world::{Direction, SPEED_TOLERANCE, tolerant_speed_m_s},
+    world::Direction,
 };
 
 /// Chooses the next hop from a position of the nominal ground.
@@ -74,48 +72,6 @@ impl Replan<ChainPosition> for ChainReplan {
             (Edge::Along(along), length) => along.arc(test, length?.1, choice),
         };
         Some(Command::of_arc(&arc, heading_of(direction), ChainPosition::on_chain(landing)))
-    }
-}
-
-/// How far one hop reaches: the parabolas of safety of the greatest speeds.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct HopReach {
-    /// The greatest take-off speed, squared, m^2/s^2.
-    pub(super) takeoff_squared: f64,
-    /// The greatest landing speed of an arc, squared, m^2/s^2; infinite with brakes.
-    pub(super) landing_squared: f64,
-    pub(super) gravity_m_s2: f64,
-}
-
-impl HopReach {
-    pub(super) fn of(ground: &DemGround) -> Self {
-        let limits = ground.hopper().limits();
-        let squared = |speed_m_s: f64| tolerant_speed_m_s(speed_m_s) * tolerant_speed_m_s(speed_m_s) * (1.0 + SPEED_TOLERANCE);
-        Self {
-            takeoff_squared: squared(limits.takeoff_speed_max_m_s),
-            landing_squared: squared(limits.arc_landing_speed_max_m_s()),
-            gravity_m_s2: ground.gravity_m_s2(),
-        }
-    }
-
-    /// The line of sight from one position to another, and its heading; `None` if no hop can span it, or if the two are one.
-    #[inline]
-    pub(super) fn sight(
-        &self,
-        ground: &DemGround,
-        from: &MapPosition,
-        target: &MapPosition,
-    ) -> Option<(LineOfSight, Vector2<f64>)> {
-        let away = target.at - from.at;
-        let run_m = away.norm();
-        if run_m <= ground.position_rounding_m() {
-            return None;
-        }
-        let sight = LineOfSight::new(run_m, target.z_m - from.z_m);
-        let g_x = self.gravity_m_s2 * run_m;
-        let too_far =
-            g_x * sight.min_speed_ratio() > self.takeoff_squared || g_x * sight.min_speed_ratio_reversed() > self.landing_squared;
-        (!too_far).then(|| (sight, away / run_m))
     }
 }
 
