@@ -88,6 +88,11 @@ impl Successors {
         self.ranked[node.index()].get_or_init(|| self.rank(node.index()))
     }
 
+    /// How many hops more than its fewest a path may take from every node.
+    pub(super) const fn extra(&self) -> u64 {
+        self.extra
+    }
+
     /// The weight of the most reliable path from a node to the goal within the hop budget; infinite without such a path.
     pub(super) fn weight(&self, node: NodeId) -> f64 {
         let own = self.fewest(node.index());

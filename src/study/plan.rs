@@ -1,19 +1,16 @@
 //! The path of fewest hops, then least effort.
 
-use std::{
-    io::{self, Write},
-    sync::Arc,
-};
+use std::io::{self, Write};
 
 use super::{
     Case, CaseError, Commands, Front, FrontWithoutErrors, JourneyError, Proof, SimulateError, dem_ground::dem_ground, front::front,
-    journey::Searched,
+    journey::Searched, to_go::ToGo,
 };
 #[cfg(feature = "plot")]
 use crate::figure::{Caption, FigureError, FigureInput, FigureTitle, FrontFigure, FrontPoint, Picture, Success, draw, draw_front};
 use crate::{
     chain::Station,
-    graph::{self, CostToGo},
+    graph,
     ground::DemGround,
     hop::HopTest,
     path::{Execution, HopPath, TooManyHops, Violation},
@@ -109,8 +106,8 @@ pub struct Planned {
     pub answer: PlanAnswer,
     /// The warnings about the path.
     pub warnings: Vec<String>,
-    /// The costs by which trials replan, with as many hops as the scenario allows, where the choice of the path computed them.
-    pub(super) to_go: Option<Arc<CostToGo>>,
+    /// What trials of the path replan by, where the choice of the path found it.
+    pub(super) to_go: Option<ToGo>,
 }
 
 /// Plans the path of fewest hops, then least effort; proves bounds and flies the path again if that is wanted.

@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 use crate::{
     chain::Station,
-    graph::{CostToGo, PostCosts, PostRisks},
+    graph::{Corridor, CostToGo, PostCosts, PostRisks},
     ground::{ChainGround, ContactPoint, DemGround, Surface},
     hop::HopTest,
     path::HopPath,
@@ -45,6 +45,8 @@ pub(super) enum Replanning {
         /// The ground under the limits that planning may use, over a DEM; `None`: that of the trials.
         over: Option<Box<DemGround>>,
     },
+    /// The nodes of a transect and the posts beside it.
+    Corridor(Arc<Corridor>),
     /// The costs-to-go of the posts of the DEM.
     PostCosts(Arc<PostCosts>),
     /// The risks-to-go of the posts of the DEM.
@@ -83,6 +85,9 @@ impl Mission {
                 let _ = chain_text(&mut digest, test);
                 let _ = write!(digest, "{to_go:?}");
             }
+            Some(Replanning::Corridor(corridor)) => {
+                let _ = write!(digest, "{corridor:?}");
+            }
             Some(Replanning::PostCosts(to_go)) => {
                 let _ = write!(digest, "{to_go:?}");
             }
@@ -107,6 +112,12 @@ impl Mission {
             *over = Some(Box::new(ground));
         }
         self
+    }
+
+    /// The same mission over a DEM, whose trials may also be replanned over the nodes of a transect and the posts beside it.
+    #[must_use]
+    pub fn with_replanning_beside_the_line(self, corridor: Arc<Corridor>) -> Self {
+        Self { replanning: Some(Replanning::Corridor(corridor)), ..self }
     }
 
     /// The same mission over a DEM, whose trials may also be replanned over its posts, in any direction: the cheapest way. A mission along

@@ -186,7 +186,7 @@ impl ReliablePost {
                 break;
             }
             let Some(lofts) = self.posts.lofts(from, &line) else { continue };
-            let total = rest + judge.estimate(self.posts.lattice.post(line.post), line.heading, (line.sight, lofts));
+            let total = rest + judge.estimate(&line.target, line.heading, (line.sight, lofts));
             best = best.min(total);
             hops.push((total, line, lofts));
         }

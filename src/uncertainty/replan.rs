@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::{
     ballistics::{self, TakeoffChoice},
     flight::Command,
-    graph::{Cost, CostToGo, Edge},
+    graph::{Corridor, Cost, CostToGo, Edge},
     ground::{ChainGround, ChainPosition, DemGround, HopReach, MapPosition, Surface, heading_of},
     hop::HopTest,
     path::{SteppedGround, nearest_command},
@@ -87,13 +87,19 @@ enum CommandKind {
 /// Replanning over a DEM, by hops to the nodes of a transect.
 #[derive(Debug)]
 pub(super) struct MapReplan {
-    pub(super) ground: DemGround,
-    pub(super) to_go: Arc<CostToGo>,
+    ground: DemGround,
+    reach: HopReach,
+    to_go: Arc<CostToGo>,
     /// The map positions of the nodes of the costs-to-go.
-    pub(super) nodes: Vec<MapPosition>,
+    nodes: Vec<MapPosition>,
 }
 
 impl MapReplan {
+    /// `nodes`: the map positions of the nodes of the costs-to-go.
+    pub(super) fn new(ground: DemGround, to_go: Arc<CostToGo>, nodes: Vec<MapPosition>) -> Self {
+        Self { reach: HopReach::of(&ground), ground, to_go, nodes }
+    }
+
     /// The best hop to any node.
     fn best(&self, from: &MapPosition, commands: CommandKind) -> Option<Command<MapPosition>> {
         let mut best: Option<(Command<MapPosition>, Cost)> = None;
@@ -119,11 +125,11 @@ impl MapReplan {
         best: Option<Cost>,
         commands: CommandKind,
     ) -> Option<(Command<MapPosition>, Cost)> {
-        let Self { ground, to_go, nodes } = self;
+        let Self { ground, reach, to_go, nodes } = self;
         let target = nodes[node];
         let rest = to_go.of_node(NodeId(node))?;
         let g = ground.gravity_m_s2();
-        let (sight, heading) = HopReach::of(ground).sight(ground, from, &target)?;
+        let (sight, heading) = reach.sight(ground, from, &target)?;
         if best.is_some_and(|best| to_go.least_cost(sight, g) + rest >= best) {
             return None;
         }
@@ -170,5 +176,25 @@ impl Replan<MapPosition> for MapReplan {
         // The best hop mostly has a command in steps; to look for one of every hop on the way to it would take many times as long.
         let nearest = in_steps(&self.ground, believed, &exact.aim, self.to_go.options().takeoff);
         nearest.or_else(|| self.best(believed, CommandKind::InSteps))
+    }
+}
+
+/// Replanning over a DEM, by hops to the nodes of a transect and the posts beside it.
+#[derive(Debug)]
+pub(super) struct CorridorReplan {
+    pub(super) corridor: Arc<Corridor>,
+}
+
+impl Replan<MapPosition> for CorridorReplan {
+    fn next(&self, believed: &MapPosition) -> Option<Command<MapPosition>> {
+        let ground = self.corridor.ground();
+        let is_continuous = ground.hopper().limits().steps.is_continuous();
+        self.corridor.next_command(believed, |judge, target, heading, hop| {
+            if is_continuous {
+                Some(judge.command((believed, target), heading, hop))
+            } else {
+                in_steps(ground, believed, target, judge.takeoff())
+            }
+        })
     }
 }

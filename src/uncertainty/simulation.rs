@@ -9,7 +9,7 @@ use super::{
     Mission, MissionPoint, Observer, Policy, SimulationError, Summary, Trajectory, TrialOptions,
     mission::{MissionGround, Replanning},
     post_replan::{CheapestPost, ReliablePost},
-    replan::{ChainReplan, MapReplan, Replan},
+    replan::{ChainReplan, CorridorReplan, MapReplan, Replan},
     tally::{Flights, PlannedPlaces, Statistics, Tally},
     trial::{Flown, Plan, PlannedHop, Rules, Tank, fly},
 };
@@ -347,7 +347,7 @@ fn chain_plan(mission: &Mission) -> Result<Plan<ChainPosition>, SimulationError>
         Some(Replanning::Nodes { test, to_go, .. }) => {
             Some(Box::new(ChainReplan { test: test.as_ref().clone(), to_go: Arc::clone(to_go) }) as _)
         }
-        Some(Replanning::PostCosts(_) | Replanning::PostRisks(_)) | None => None,
+        Some(Replanning::Corridor(_) | Replanning::PostCosts(_) | Replanning::PostRisks(_)) | None => None,
     };
     let goal = Point2::new(mission.goal.along_m, 0.0);
     Ok(Plan { start: position(&mission.start, MissionPoint::Start)?, goal, hops, replan })
@@ -380,8 +380,9 @@ fn map_plan(mission: &Mission, ground: &DemGround) -> Result<Plan<MapPosition>, 
             let node = |station| on_ground(&test.chain().contact_point(station), MissionPoint::Node);
             let nodes = stations.map(node).collect::<Result<_, _>>()?;
             let ground = over.as_deref().unwrap_or(ground).clone();
-            Some(Box::new(MapReplan { ground, to_go: Arc::clone(to_go), nodes }))
+            Some(Box::new(MapReplan::new(ground, Arc::clone(to_go), nodes)))
         }
+        Some(Replanning::Corridor(corridor)) => Some(Box::new(CorridorReplan { corridor: Arc::clone(corridor) })),
         Some(Replanning::PostCosts(to_go)) => Some(Box::new(CheapestPost::new(ground, to_go))),
         Some(Replanning::PostRisks(to_go)) => Some(Box::new(ReliablePost::new(ground, to_go))),
         None => None,

@@ -7,8 +7,9 @@ use super::{LEAST_SUCCESS, most_reliable};
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
     flight::{Command, HopTrials, JudgedHop, SEARCHED_DRAWS, Uncertainty},
-    ground::{DemGround, MapPosition, Post, Surface},
+    ground::{DemGround, LandingScatter, MapPosition, Surface},
     quantity::{Angle, SlopeInterval, normal_cdf},
+    world::FrictionCone,
 };
 
 /// Judges hops over a map, without a chain.
@@ -55,19 +56,22 @@ impl MapJudge {
         self.takeoff
     }
 
-    /// An estimate of the weight of a hop to a post of the DEM, in closed form: for the command chosen (the
+    /// An estimate of the weight of a hop to a place on the DEM, in closed form: for the command chosen (the
     /// middle one for the most reliable), the probability that its angle
-    /// stays inside the feasible window and its landing below the speed limit, and the share of the facets around the post that hold it.
+    /// stays inside the feasible window and its landing below the speed limit, and that the facet on which it comes down holds it.
     ///
     /// At least [`EACH_HOP`](Self::EACH_HOP). Measured errors are left to the trials, which fly them.
-    pub(crate) fn estimate(&self, post: Post, heading: Vector2<f64>, (sight, lofts): (LineOfSight, SlopeInterval)) -> f64 {
+    pub(crate) fn estimate(&self, target: &MapPosition, heading: Vector2<f64>, (sight, lofts): (LineOfSight, SlopeInterval)) -> f64 {
         let envelope = self.trials.ground().envelope();
         let arc = Arc::new(sight, envelope.loft(self.takeoff, sight, lofts), envelope.gravity_m_s2());
         let angle = |loft: f64| Angle::from_slope(sight.slope() + loft).radians();
         let flown = arc.takeoff_angle().radians();
         let inside = |room: f64, sigma: f64| if sigma > 0.0 { normal_cdf(room / sigma) } else { 1.0 };
         let errors = &self.errors;
-        let sigma = libm::hypot(errors.takeoff_angle_sigma.radians(), errors.takeoff_angle_bias_sigma.radians());
+        let of_command = libm::hypot(errors.takeoff_angle_sigma.radians(), errors.takeoff_angle_bias_sigma.radians());
+        // The cone about the normal of the facet, whose half-angle is atan(mu), is as uncertain as friction.
+        let mu = self.trials.ground().constant_friction().map_or(0.0, FrictionCone::coefficient);
+        let sigma = libm::hypot(of_command, errors.friction_sigma / (1.0 + mu * mu));
         let of_angle = inside(flown - angle(lofts.lower), sigma) + inside(angle(lofts.upper) - flown, sigma) - 1.0;
         let limits = self.trials.ground().hopper().limits();
         let of_speed = if limits.landing.brakes() {
@@ -79,7 +83,26 @@ impl MapJudge {
             let sigma_m_s = libm::hypot(fraction * takeoff_m_s, errors.takeoff_speed_sigma_m_s);
             inside((limits.landing_speed_max_m_s - landing_m_s) * landing_m_s, sigma_m_s * takeoff_m_s)
         };
-        let of_ground = 1.0 - self.trials.ground().refusing_share(post, heading, arc.landing_slope());
+        let of_ground = 1.0 - self.trials.ground().refusing_share(target, heading, arc.landing_slope(), &self.landing_scatter(&arc));
         Self::EACH_HOP - libm::log((of_angle * of_speed * of_ground).clamp(LEAST_SUCCESS, 1.0))
+    }
+
+    /// How the landings of an arc scatter, to the first order: over level ground of the arc's length,
+    /// `dR / R = 2 dv / v + 2 cot(2 theta) d theta`.
+    pub(crate) fn landing_scatter(&self, arc: &Arc) -> LandingScatter {
+        let (errors, run_m) = (&self.errors, arc.line_of_sight().run_m());
+        let squares = |sigmas: [f64; 4]| sigmas.iter().map(|sigma| sigma * sigma).sum::<f64>();
+        let speed_m_s = arc.takeoff_speed_m_s();
+        let fractions = [errors.takeoff_speed_sigma_fraction, errors.takeoff_speed_bias_sigma_fraction];
+        let speed = squares([fractions[0], fractions[1], errors.takeoff_speed_sigma_m_s / speed_m_s, 0.0]).sqrt();
+        let angle = libm::hypot(errors.takeoff_angle_sigma.radians(), errors.takeoff_angle_bias_sigma.radians());
+        let heading = libm::hypot(errors.heading_sigma.radians(), errors.heading_bias_sigma.radians());
+        let cotangent = 1.0 / libm::tan(2.0 * arc.takeoff_angle().radians());
+        let of_angle_m = if angle > 0.0 { (2.0 * run_m * angle * cotangent).abs().min(run_m) } else { 0.0 };
+        LandingScatter {
+            along_m: squares([2.0 * run_m * speed, of_angle_m, errors.drift_along_sigma_m, errors.position_sigma_m]).sqrt(),
+            across_m: squares([run_m * heading, errors.drift_across_sigma_m, errors.position_sigma_m, 0.0]).sqrt(),
+            friction: errors.friction_sigma,
+        }
     }
 }

@@ -76,6 +76,7 @@ impl Relaxed<'_> {
         let lattice = self.hops.lattice();
         let label = |index: usize| f64::from_bits(self.labels[index].load(Ordering::Relaxed));
         let (to, own) = (lattice.node(index), label(index));
+        let Some(target) = self.hops.position(to) else { return Ok(()) };
         let within = self.hops.within_reach(lattice.block_of(to));
         for (number, offset) in self.hops.offsets()[..within].iter().enumerate() {
             let Some(from) = self.hops.takeoff(to, number) else { continue };
@@ -85,7 +86,7 @@ impl Relaxed<'_> {
             }
             counter.pair()?;
             let Some(lofts) = self.hops.lofts_where(from, offset, |_, _| true)? else { continue };
-            let total = own + self.judge.estimate(lattice.post(to), offset.heading, lofts);
+            let total = own + self.judge.estimate(&target, offset.heading, lofts);
             known.fetch_min(total.to_bits(), Ordering::Relaxed);
         }
         Ok(())
@@ -133,7 +134,7 @@ mod tests {
                     for number in 0..hops.offset_count() {
                         let Some(to) = hops.landing(from, number) else { continue };
                         let Some(lofts) = hops.lofts(from, number).unwrap() else { continue };
-                        let weight = judge.estimate(lattice.post(to), hops.offsets()[number].heading, lofts);
+                        let weight = judge.estimate(&hops.position(to).unwrap(), hops.offsets()[number].heading, lofts);
                         assert!(weight >= MapJudge::EACH_HOP, "{weight}");
                         let label = &mut expected[lattice.index(from)];
                         *label = label.min(before[lattice.index(to)] + weight);
