@@ -284,9 +284,7 @@ fn order(wanted: &Wanted) -> Result<(), Failure> {
 fn defaults(wanted: &Wanted) -> Result<(), Failure> {
     const TRIALS: u64 = 1000;
     let (mut attainable, mut reached) = (0, 0);
-    println!(
-        "| journey | hops | defaults, replanned | best known, replanned | defaults, open loop |\n|---|---|---|---|---|"
-    );
+    println!("| journey | hops | defaults, replanned | best known, replanned | defaults, open loop |\n|---|---|---|---|---|");
     for (number, journey) in journeys(wanted, goal_machine)?.iter().enumerate() {
         let Some(own) = planned(journey, &[])? else { continue };
         let open = planned(journey, &[("uncertainty", "policy", "\"open-loop\"".to_owned())])?;

@@ -143,7 +143,8 @@ impl Corridor {
         let nearest = nodes.nearest(from.at, |node| self.successors.fewest(node).is_some())?;
         let rest_hops = self.successors.fewest(nearest).map_or(0, |own| (own + self.successors.extra()).saturating_sub(1));
         let in_budget = |node: usize| self.successors.weight_with_hops(node, rest_hops);
-        let near = self.successors.of(NodeId(nearest)).iter().filter_map(|node| nodes.onward(from, node.index(), in_budget(node.index())));
+        let near =
+            self.successors.of(NodeId(nearest)).iter().filter_map(|node| nodes.onward(from, node.index(), in_budget(node.index())));
         let mut hops: Vec<Onward> = near.take(COMPARED).collect();
         let mut made = |hops: &mut Vec<Onward>| {
             hops.sort_by(|a, b| a.total.total_cmp(&b.total));
@@ -309,4 +310,170 @@ fn fewest_hops(edges: &[Vec<Successor>], goal: usize) -> Vec<Option<u64>> {
         }
     }
     fewest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        draw::Draw,
+        flight::Uncertainty,
+        graph::{PointSpacing, TakeoffScatter},
+        ground::Windows,
+        quantity::{Angle, VertexId},
+        terrain::{Dem, GeoReference, OverlaidDem, Overlays, Triangles},
+        world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
+    };
+
+    const ERRORS: Uncertainty =
+        Uncertainty { takeoff_speed_sigma_fraction: 0.02, takeoff_angle_sigma: Angle::from_radians(0.02), ..Uncertainty::NONE };
+
+    fn rough_ground(draw: &mut Draw) -> DemGround {
+        let heights = (0..14 * 18).map(|_| if draw.chance(0.04) { f64::NAN } else { draw.uniform(0.0, 0.5) }).collect();
+        let dem = Dem::new(14, 18, heights, GeoReference::local(MapPoint::new(3.0, 20.0), 1.0, 1.2).unwrap()).unwrap();
+        let grip = Some(Grip::Friction(FrictionCone::new(draw.uniform(0.7, 1.2)).unwrap()));
+        let surface = SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds };
+        let hopper = Hopper::with_speeds(2.6, 2.6).unwrap();
+        DemGround::new(OverlaidDem::new(dem, Overlays::default()), &hopper, Gravity::new(1.62).unwrap(), &surface)
+    }
+
+    /// The corridor of a line over the middle of a ground; `None` where there is none.
+    fn corridor(ground: &DemGround, beside: Beside, extra: u32) -> Option<Corridor> {
+        let chain = ground.chain(MapPoint::new(4.2, 12.3), MapPoint::new(18.4, 11.1)).ok()?;
+        let last = VertexId(chain.geometry().segment_count());
+        let [start, goal] = [VertexId(0), last].map(|vertex| chain.geometry().vertex_station(vertex));
+        let spacing = PointSpacing::PerSegment(0);
+        let nodes = NodeSet::new(&chain, start, goal, spacing).unwrap();
+        let options = SearchOptions { spacing: Some(spacing), ..SearchOptions::default() };
+        let model = RiskModel::Flown {
+            errors: ERRORS,
+            takeoffs: TakeoffScatter::OfPosition,
+            over: Some(Box::new(ground.clone())),
+            whole: None,
+        };
+        let reliability = ReliabilityOptions { model, extra_hops_max: Some(extra), goal_tolerance_m: Some(0.5) };
+        Corridor::new(&HopTest::new(chain), &nodes, &options, (&reliability, ground, beside), &()).unwrap()
+    }
+
+    /// Hops by slices, fewest hops and least weights by rounds over all pairs until nothing changes.
+    #[test]
+    fn hops_and_weights_equal_those_of_all_pairs() {
+        let draw = &mut Draw::seeded(1701);
+        let (mut corridors, mut edges, mut fewer) = (0, 0, 0);
+        for round in 0..8 {
+            let (ground, beside) = (rough_ground(draw), Beside::ALL[round % 2]);
+            let Some(found) = corridor(&ground, beside, 60) else { continue };
+            corridors += 1;
+            let nodes = found.nodes.as_ref();
+            let count = nodes.positions.len();
+            let weight = |from: usize, to: usize| {
+                let [from, to] = [from, to].map(|node| nodes.positions[node]);
+                // Slices decide which hops there are; their lofts differ from those of a walk by rounding.
+                let windows = ground.windows(&from, &to)?;
+                windows.lofts.first()?;
+                let heading = (to.at - from.at).normalize();
+                let lofts = ground.lofts_by_walk(&from, &to, windows.sight, heading).expect("the hop of the slice");
+                Some(nodes.judge.estimate(&to, heading, (windows.sight, lofts)))
+            };
+            let all: Vec<Vec<Option<f64>>> =
+                (0..count).map(|from| (0..count).map(|to| weight(from, to).filter(|_| from != to)).collect()).collect();
+            let mut expected = vec![(u64::MAX, f64::INFINITY); count];
+            expected[nodes.goal] = (0, 0.0);
+            loop {
+                let before = expected.clone();
+                for from in (0..count).filter(|&from| from != nodes.goal) {
+                    for (to, weight) in all[from].iter().enumerate().filter_map(|(to, weight)| Some((to, (*weight)?))) {
+                        let (hops, least) = &mut expected[from];
+                        *hops = (*hops).min(before[to].0.saturating_add(1));
+                        *least = least.min(before[to].1 + weight);
+                    }
+                }
+                if expected == before {
+                    break;
+                }
+            }
+            for (node, &(hops, least)) in expected.iter().enumerate() {
+                assert_eq!(found.successors.fewest(node).unwrap_or(u64::MAX), hops, "node {node} of round {round}");
+                let weight = found.successors.weight(NodeId(node));
+                assert!(weight == least || (weight - least).abs() < 1e-9 * least, "node {node}: {weight}, expected {least}");
+                fewer += u32::from(least.is_finite() && hops > 2);
+            }
+            edges += all.iter().flatten().flatten().count();
+        }
+        assert!(
+            corridors > 4 && edges > 5000 && fewer > 100,
+            "{corridors} corridors, {edges} hops, {fewer} nodes far from the goal"
+        );
+    }
+
+    /// Without errors the robot lands where it aims.
+    #[test]
+    fn a_robot_without_errors_comes_to_the_goal_from_every_node_and_from_beside_them() {
+        let draw = &mut Draw::seeded(1702);
+        let (mut arrived, mut from_beside) = (0, 0);
+        for round in 0..6 {
+            let ground = rough_ground(draw);
+            for extra in [0, 3] {
+                let Some(found) = corridor(&ground, Beside::ALL[round % 2], 8).map(|found| {
+                    let fewest = found.successors.fewest(found.nodes.start).unwrap_or(0);
+                    found.with_hops(fewest + extra)
+                }) else {
+                    continue;
+                };
+                let goal = found.nodes.positions[found.nodes.goal];
+                let mut fly = |mut at: MapPosition| {
+                    for hops in 0..80 {
+                        if at == goal {
+                            return Some(hops);
+                        }
+                        at = found.next_command(&at, |_, target, _, _| Some(*target))?;
+                    }
+                    None
+                };
+                for node in 0..found.node_count() {
+                    let Some(fewest) = found.successors.fewest(node) else { continue };
+                    let hops = fly(found.nodes.positions[node]).expect("a way to the goal");
+                    assert!(hops >= fewest, "{hops} hops from node {node}, expected at least {fewest}");
+                    arrived += 1;
+                }
+                for _ in 0..10 {
+                    let beside = MapPoint::new(draw.uniform(5.0, 17.0), draw.uniform(9.0, 14.0));
+                    from_beside += u32::from(ground.position(beside).and_then(&mut fly).is_some());
+                }
+            }
+        }
+        assert!(arrived > 300 && from_beside > 30, "{arrived} nodes, {from_beside} places beside them");
+    }
+
+    #[test]
+    fn the_flattest_facet_of_a_square_is_the_flattest_and_its_middle_lies_on_the_ground() {
+        let draw = &mut Draw::seeded(1703);
+        let (mut found, mut gaps) = (0, 0);
+        for _ in 0..8 {
+            let ground = rough_ground(draw);
+            let (dem, none) = (ground.terrain().dem(), Triangles::of(ground.terrain().dem()));
+            let triangles = |at: MapPoint| Triangles::of(dem).at(at, none.nominal()).map(|(_, gradient)| gradient);
+            for (row, col, stride) in [(0, 0, 2), (3, 5, 1), (6, 10, 3), (12, 16, 1), (13, 17, 1), (12, 3, 4)] {
+                let Some(middle) = flattest(&ground, Post { row, col }, stride) else {
+                    gaps += 1;
+                    continue;
+                };
+                let there = ground.position(middle.at).expect("ground under the middle of a facet");
+                assert!((there.z_m - middle.z_m).abs() < 1e-12, "{middle:?}: {there:?}");
+                let map = ground.terrain().dem().georeference();
+                let own = triangles(middle.at).expect("a facet").norm_squared();
+                // The middles of all facets lie at thirds of their squares.
+                for (down, right) in (0..stride).flat_map(|down| (0..stride).map(move |right| (down, right))) {
+                    for (third_down, third_right) in [(1.0, 2.0), (2.0, 1.0)] {
+                        let post = map.post(row + down, col + right);
+                        let at = MapPoint::new(post.x + third_right / 3.0 * map.dx_m(), post.y - third_down / 3.0 * map.dy_m());
+                        let is_flatter = triangles(at).is_some_and(|gradient| gradient.norm_squared() < own * (1.0 - 1e-9));
+                        assert!(!is_flatter, "{row}, {col}: flatter at {at:?}");
+                    }
+                }
+                found += 1;
+            }
+        }
+        assert!(found > 20 && gaps > 7, "{found} found, {gaps} squares without a facet");
+    }
 }

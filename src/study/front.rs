@@ -2,12 +2,18 @@
 
 use std::{borrow::Cow, sync::Arc};
 
-use super::{Case, JourneyError, SimulateError, dem_ground::dem_ground, journey::Searched, pipeline::planned_over, to_go::{Replanning, ToGo}};
+use super::{
+    Case, JourneyError, SimulateError,
+    dem_ground::dem_ground,
+    journey::Searched,
+    pipeline::planned_over,
+    to_go::{Replanning, ToGo},
+};
 use crate::{
     chain::Station,
     graph::{
-        self, Beside, Corridor, CostToGo, NodeSet, Outcome, ReliabilityOptions, ReliabilityUse, ReliablePath, RiskModel, TakeoffScatter, most_reliable_paths,
-        path_within_budget, preferred_path,
+        self, Beside, Corridor, CostToGo, NodeSet, Outcome, ReliabilityOptions, ReliabilityUse, ReliablePath, RiskModel,
+        TakeoffScatter, most_reliable_paths, path_within_budget, preferred_path,
     },
     ground::{DemGround, Surface},
     hop::HopTest,
@@ -175,14 +181,16 @@ impl FlownJourney<'_> {
         let corridor = match (slot.get(), self.ground, self.replanned_reliability()) {
             (Some(known), ..) => known.as_ref(),
             (None, Some(ground), Some(reliability)) => {
-                let over = if self.whole.is_some() { Cow::Owned(planned_over(ground, self.scenario)) } else { Cow::Borrowed(ground) };
+                let over =
+                    if self.whole.is_some() { Cow::Owned(planned_over(ground, self.scenario)) } else { Cow::Borrowed(ground) };
                 let (nodes, options) = (self.nodes(found)?, &self.scenario.search);
                 let corridor = Corridor::new(self.test, &nodes, options, (&reliability, &over, beside), progress)?;
                 slot.get_or_init(|| corridor).as_ref()
             }
             _ => None,
         };
-        Ok(corridor.map(|corridor| ToGo::Corridor(Arc::new(hops.map_or_else(|| corridor.clone(), |hops| corridor.with_hops(hops))))))
+        Ok(corridor
+            .map(|corridor| ToGo::Corridor(Arc::new(hops.map_or_else(|| corridor.clone(), |hops| corridor.with_hops(hops))))))
     }
 
     /// The share of fixed trials of one path that reach the goal, and what they replan by; open loop without `replanning`.

@@ -13,6 +13,7 @@ mod ballistics_conflicts;
 mod ballistics_precision;
 mod ballistics_sampling;
 mod bends;
+mod beside_line;
 mod braked;
 mod chain_csv_problems;
 mod chain_csv_round_trip;

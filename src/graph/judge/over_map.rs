@@ -61,7 +61,12 @@ impl MapJudge {
     /// stays inside the feasible window and its landing below the speed limit, and that the facet on which it comes down holds it.
     ///
     /// At least [`EACH_HOP`](Self::EACH_HOP). Measured errors are left to the trials, which fly them.
-    pub(crate) fn estimate(&self, target: &MapPosition, heading: Vector2<f64>, (sight, lofts): (LineOfSight, SlopeInterval)) -> f64 {
+    pub(crate) fn estimate(
+        &self,
+        target: &MapPosition,
+        heading: Vector2<f64>,
+        (sight, lofts): (LineOfSight, SlopeInterval),
+    ) -> f64 {
         let envelope = self.trials.ground().envelope();
         let arc = Arc::new(sight, envelope.loft(self.takeoff, sight, lofts), envelope.gravity_m_s2());
         let angle = |loft: f64| Angle::from_slope(sight.slope() + loft).radians();
@@ -83,7 +88,8 @@ impl MapJudge {
             let sigma_m_s = libm::hypot(fraction * takeoff_m_s, errors.takeoff_speed_sigma_m_s);
             inside((limits.landing_speed_max_m_s - landing_m_s) * landing_m_s, sigma_m_s * takeoff_m_s)
         };
-        let of_ground = 1.0 - self.trials.ground().refusing_share(target, heading, arc.landing_slope(), &self.landing_scatter(&arc));
+        let of_ground =
+            1.0 - self.trials.ground().refusing_share(target, heading, arc.landing_slope(), &self.landing_scatter(&arc));
         Self::EACH_HOP - libm::log((of_angle * of_speed * of_ground).clamp(LEAST_SUCCESS, 1.0))
     }
 
