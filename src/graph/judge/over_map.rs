@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 
 use super::{LEAST_SUCCESS, most_reliable};
 use crate::{
-    ballistics::{Arc, LineOfSight, TakeoffChoice},
+    ballistics::{Arc, FlightEnvelope, LineOfSight, TakeoffChoice},
     flight::{Command, HopTrials, JudgedHop, SEARCHED_DRAWS, Uncertainty},
     ground::{DemGround, MapPosition, Post, Surface},
     quantity::{Angle, SlopeInterval, normal_cdf},
@@ -15,6 +15,8 @@ use crate::{
 #[derive(Clone, Debug)]
 pub(crate) struct MapJudge {
     trials: HopTrials<DemGround>,
+    /// Under the limits that planning may use.
+    planning: FlightEnvelope,
     errors: Uncertainty,
     takeoff: TakeoffChoice,
 }
@@ -28,7 +30,14 @@ impl MapJudge {
 
     pub(crate) fn new(ground: &DemGround, errors: &Uncertainty, takeoff: TakeoffChoice) -> Self {
         let trials = HopTrials::new(ground, errors, errors.distribution, 1, SEARCHED_DRAWS);
-        Self { trials, errors: errors.clone(), takeoff }
+        Self { trials, planning: *ground.envelope(), errors: errors.clone(), takeoff }
+    }
+
+    /// The same for commands that are planned within the limits of another envelope.
+    #[must_use]
+    pub(crate) const fn planned_within(mut self, planning: &FlightEnvelope) -> Self {
+        self.planning = *planning;
+        self
     }
 
     /// The command of a hop from where the robot believes to be: by the choice of take-offs.
@@ -38,7 +47,7 @@ impl MapJudge {
         heading: Vector2<f64>,
         (sight, lofts): (LineOfSight, SlopeInterval),
     ) -> Command<MapPosition> {
-        let envelope = self.trials.ground().envelope();
+        let envelope = &self.planning;
         let command = |loft| Command::of_arc(&Arc::new(sight, loft, envelope.gravity_m_s2()), heading, *to);
         if self.takeoff != TakeoffChoice::MostReliable {
             return command(envelope.loft(self.takeoff, sight, lofts));
@@ -61,7 +70,7 @@ impl MapJudge {
     ///
     /// At least [`EACH_HOP`](Self::EACH_HOP). Measured errors are left to the trials, which fly them.
     pub(crate) fn estimate(&self, post: Post, heading: Vector2<f64>, (sight, lofts): (LineOfSight, SlopeInterval)) -> f64 {
-        let envelope = self.trials.ground().envelope();
+        let envelope = &self.planning;
         let arc = Arc::new(sight, envelope.loft(self.takeoff, sight, lofts), envelope.gravity_m_s2());
         let angle = |loft: f64| Angle::from_slope(sight.slope() + loft).radians();
         let flown = arc.takeoff_angle().radians();
