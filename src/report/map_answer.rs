@@ -333,7 +333,11 @@ impl MapAnswer {
         }
         for goal in &self.goals {
             if let Some(simulation) = &goal.simulation {
-                let _ = write!(text, "\ngoal ({:.3}, {:.3}) m\n{}", goal.x_m, goal.y_m, simulation.text());
+                let _ = writeln!(text, "\ngoal ({:.3}, {:.3}) m", goal.x_m, goal.y_m);
+                if let Some(estimate) = goal.totals.as_ref().and_then(|totals| totals.estimate) {
+                    let _ = writeln!(text, "{}", estimate.line());
+                }
+                text.push_str(&simulation.text());
             }
         }
         text
