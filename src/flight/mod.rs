@@ -3,6 +3,7 @@
 //! [`crate::uncertainty`] combines hops to trials: policies, outcomes, statistics.
 
 mod bounce;
+mod command_spread;
 mod deviations;
 mod distribution;
 mod draws;
@@ -14,6 +15,7 @@ mod measured;
 mod quasi;
 mod rest_aim;
 
+pub(crate) use command_spread::CommandSpread;
 pub use deviations::{Uncertainty, UncertaintyProblem};
 pub use distribution::Distribution;
 pub(crate) use draws::TrialDraws;
