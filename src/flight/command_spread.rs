@@ -115,11 +115,11 @@ mod tests {
     };
 
     /// Rows whose errors are a mean and a deviation times the quantiles of a Gaussian, speeds and angles in different orders.
-    fn rows(columns: &str, count: u32, row: impl Fn(f64, f64) -> String) -> Option<MeasuredErrors> {
+    fn rows(columns: &str, count: u32, row: impl Fn(f64, f64) -> String) -> MeasuredErrors {
         let quantile = |i: u32| Distribution::Normal.standard_quantile((f64::from(i % count) + 0.5) / f64::from(count));
         let rows = (0..count).map(|i| row(quantile(i), quantile(i * 89))).collect::<Vec<_>>().join("\n");
         let file = read_measured_csv(format!("{columns}\n{rows}\n").as_bytes()).expect("a valid file");
-        Some(MeasuredErrors::of(&file))
+        MeasuredErrors::of(&file)
     }
 
     /// Against the share of 4 096 fixed draws, by the code that draws errors for flights.
@@ -139,7 +139,7 @@ mod tests {
         let angle_alone = rows("takeoff_angle_error_deg", 256, |_, b| format!("{}", b - 0.3));
         let one = rows("takeoff_speed_error_m_s,takeoff_angle_error_deg", 1, |_, _| "0.02,-0.5".to_owned());
         let measured =
-            |measured: &Option<MeasuredErrors>, beside: &Uncertainty| Uncertainty { measured: measured.clone(), ..beside.clone() };
+            |measured: &MeasuredErrors, beside: &Uncertainty| Uncertainty { measured: Some(measured.clone()), ..beside.clone() };
         let none = Uncertainty::NONE;
         let cases = [
             ("deviations", speed.clone(), 0.01),
