@@ -139,7 +139,6 @@ impl Purpose {
             ("search", "risk") if matches!(self, Self::Map { trials: true, .. }) => true,
             ("search", "risk" | "risk_extra_hops_max") => by_risk,
             ("budget", _) => by_risk || matches!(self, Self::Require | Self::Trade),
-            ("derating", _) => !matches!(self, Self::Map { .. }),
             // The trials of an estimate have a number and a seed of their own.
             ("uncertainty", "trials" | "seed") => flies,
             ("uncertainty", _) => flies || by_success || (errors && matches!(self, Self::Plan)) || (by_risk && weighs_risk),
@@ -202,12 +201,14 @@ impl Purpose {
                 ));
                 continue;
             }
-            // So is a least success that the file wants, and a reserve of the limits.
-            let is_default = key.table == "derating" && scenario.derating.is_none();
-            if matches!(key.table, "budget" | "derating") && self != Self::Hop && !is_default {
+            // So is a least success that the file wants.
+            if key.table == "budget" && self != Self::Hop {
                 let users = Self::users(key, weighs, self);
-                let what = if key.table == "budget" { "counts hops and estimates no success" } else { "uses the whole limits" };
-                warnings.push(format!("{} is not kept by this answer of chta {}, which {what}{users}", key.path(), self.command()));
+                warnings.push(format!(
+                    "{} is not kept by this answer of chta {}, which counts hops and estimates no success{users}",
+                    key.path(),
+                    self.command()
+                ));
                 continue;
             }
             let said = match place {

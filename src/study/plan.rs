@@ -163,7 +163,7 @@ impl Planned {
     /// The whole raster with its overlays, for flights in three dimensions; `None` if the terrain is a mesh or a chain.
     ///
     /// # Errors
-    /// [`SimulateError::Dem`] and [`SimulateError::Overlay`].
+    /// [`SimulateError::Dem`].
     pub fn dem_ground(&self) -> Result<Option<DemGround>, SimulateError> {
         dem_ground(&self.case)
     }

@@ -61,6 +61,7 @@ mod sound_files;
 mod sweep;
 mod takeoff_speeds;
 mod terrain_files;
+mod terrain_read_once;
 mod timetable;
 mod true_north;
 mod truncations;

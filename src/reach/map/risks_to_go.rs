@@ -9,6 +9,7 @@ use crate::{
     ballistics::TakeoffChoice,
     flight::Uncertainty,
     graph::{MapJudge, PostRisks},
+    ground::DemGround,
     progress::{Detail, Meter, PairCounter, Progress, Stage},
 };
 
@@ -29,13 +30,29 @@ use crate::{
 pub fn risks_to_go(
     hops: &PostHops,
     goal: Post,
+    criterion: (&Uncertainty, TakeoffChoice),
+    progress: &dyn Progress,
+) -> Result<PostRisks, MapError> {
+    risks_flown_over(hops, hops.ground(), goal, criterion, progress)
+}
+
+/// The same for hops that are planned under shares of the limits, and flown over a ground with the whole limits.
+///
+/// Of the closed form, the window of angles stays the one that planning may use.
+///
+/// # Errors
+/// [`MapError`].
+pub fn risks_flown_over(
+    hops: &PostHops,
+    flown: &DemGround,
+    goal: Post,
     (errors, takeoff): (&Uncertainty, TakeoffChoice),
     progress: &dyn Progress,
 ) -> Result<PostRisks, MapError> {
     let meter = Meter::new(progress, Stage::Reliability);
     meter.report(Detail::None)?;
     let lattice = hops.lattice();
-    let judge = MapJudge::new(hops.ground(), errors, takeoff);
+    let judge = MapJudge::new(flown, errors, takeoff).planned_within(hops.ground().envelope());
     // Of doubles that are not negative, the bits have the order of the values.
     let labels: Vec<AtomicU64> = (0..lattice.count()).map(|_| AtomicU64::new(f64::INFINITY.to_bits())).collect();
     labels[lattice.index(goal)].store(0, Ordering::Relaxed);
@@ -98,7 +115,6 @@ mod tests {
     use super::*;
     use crate::{
         draw::Draw,
-        ground::DemGround,
         quantity::{Angle, MapPoint},
         terrain::{Dem, GeoReference, OverlaidDem, Overlays},
         world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
