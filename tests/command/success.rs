@@ -267,12 +267,13 @@ fn an_answer_for_derated_limits_says_so() {
     let words = "planned with derated limits ([derating]: 0.5 of the take-off speed)";
     let map = ["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"];
     let fan = ["fan", "ground.tif", "--from", "5,5", "--length", "9", "--scenario", "map.toml"];
-    let rows: [(&[&str], &str); 7] = [
+    let rows: [(&[&str], &str); 8] = [
         (&["check", "scenario.toml", "--prove", "--prove-cells-max", "200"], "the proof is for the derated limits"),
         (&["plan", "scenario.toml"], words),
         (&["check", "scenario.toml"], words),
         (&["require", "scenario.toml", "--vary", "surface.friction_coefficient", "--resolution", "0.2"], words),
         (&["hop", "scenario.toml", "--to", "5"], words),
+        (&["trade", "scenario.toml", "--vary", "surface.friction_coefficient=0.5:0.7:2"], words),
         (&map, words),
         (&fan, words),
     ];
