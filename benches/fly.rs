@@ -3,6 +3,12 @@
 //!
 //! `cargo bench --bench fly`. Items are flown hops, so the throughput is hops per second per core. Compare lines of one run with
 //! each other.
+//!
+//! The hopper does not bounce. That its trials are as fast as before there were bounces, both measured in one run:
+//!
+//! ```sh
+//! BENCHES=fly benches/against_commit.sh "$(git log -1 --diff-filter=A --format=%h -- src/flight/bounce.rs)~1" --assert
+//! ```
 
 #![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
 #![allow(clippy::print_stdout, reason = "the outcomes of the trials are needed to read the times")]

@@ -164,7 +164,6 @@ impl Purpose {
             ("search", "risk" | "risk_extra_hops_max") => by_risk,
             ("budget", "estimated_success_min") => by_risk || matches!(self, Self::Require | Self::Trade),
             ("budget", _) | ("search", "objective") => self.plans_by_objective(),
-            ("derating", _) => !matches!(self, Self::Map { .. }),
             // The trials of an estimate have a number and a seed of their own.
             ("uncertainty", "trials" | "seed") => flies,
             ("uncertainty", _) => flies || by_success || (errors && matches!(self, Self::Plan)) || (by_risk && weighs_risk),
@@ -232,15 +231,13 @@ impl Purpose {
                 ));
                 continue;
             }
-            // So is a least success that the file wants, and a reserve of the limits.
-            let is_default = key.table == "derating" && scenario.derating.is_none();
+            // So is a least success that the file wants.
             let is_objective = (key.table, key.name) == ("search", "objective");
-            if (matches!(key.table, "budget" | "derating") || is_objective) && self != Self::Hop && !is_default {
+            if (key.table == "budget" || is_objective) && self != Self::Hop {
                 let users = Self::users(key, weighs, self);
                 let what = match (key.table, key.name) {
                     ("budget", "estimated_success_min") => "counts hops and estimates no success",
-                    ("budget" | "search", _) => "counts hops and no other totals",
-                    _ => "uses the whole limits",
+                    _ => "counts hops and no other totals",
                 };
                 warnings.push(format!("{} is not kept by this answer of chta {}, which {what}{users}", key.path(), self.command()));
                 continue;

@@ -70,7 +70,6 @@ impl From<SimulateError> for Failure {
     fn from(error: SimulateError) -> Self {
         match error {
             SimulateError::Dem { file, problem } => Self::about(&file, &*problem),
-            SimulateError::Overlay(problem) => Self::of(&*problem),
             other => Self::of(&other),
         }
     }

@@ -44,6 +44,26 @@ impl Distribution {
     }
 }
 
+impl Distribution {
+    /// The share of the sums of two independent errors that does not exceed a bound, both even and of these deviations; the second at most the
+    /// first, which is above 0.
+    ///
+    /// With half widths a and b, the density rises from -(a + b) to -(a - b), is level up to a - b, and falls.
+    pub(crate) fn share_of_two_even(bound: f64, deviations: [f64; 2]) -> f64 {
+        let [a, b] = deviations.map(|deviation| HALF_WIDTH * deviation);
+        let size = bound.abs();
+        let above = if size >= a + b {
+            0.0
+        } else if size <= a - b {
+            0.5 * (1.0 - size / a)
+        } else {
+            let left = a + b - size;
+            left * left / (8.0 * a * b)
+        };
+        if bound < 0.0 { above } else { 1.0 - above }
+    }
+}
+
 crate::quantity::by_name!(Distribution, Distribution::ALL);
 
 /// Half the width of a uniform distribution of deviation 1: its variance is a third of the square of that.

@@ -120,6 +120,12 @@ impl MeasuredErrors {
         Self { has: self.has, rows: self.rows.iter().map(scaled).collect() }
     }
 
+    /// The mean over all rows; 0 without rows.
+    #[expect(clippy::cast_precision_loss, reason = "below 2^53 rows")]
+    pub(crate) fn mean(&self, of: impl Fn(&MeasuredRow) -> f64) -> f64 {
+        self.rows.iter().map(of).sum::<f64>() / self.rows.len().max(1) as f64
+    }
+
     /// Whether any row is so.
     pub(crate) fn any(&self, is_so: impl Fn(&MeasuredRow) -> bool) -> bool {
         self.rows.iter().any(is_so)

@@ -3,6 +3,7 @@
 //! [`crate::uncertainty`] combines hops to trials: policies, outcomes, statistics.
 
 mod bounce;
+mod command_spread;
 mod deviations;
 mod distribution;
 mod draws;
@@ -14,6 +15,7 @@ mod measured;
 mod quasi;
 mod rest_aim;
 
+pub(crate) use command_spread::CommandSpread;
 pub use deviations::{Uncertainty, UncertaintyProblem};
 pub use distribution::Distribution;
 pub(crate) use draws::TrialDraws;
@@ -23,4 +25,5 @@ pub use hop_errors::DrawnErrors;
 pub(crate) use hop_errors::{Errors, HopErrors};
 pub(crate) use hop_trials::{HopTrials, JudgedHop, REPORTED_DRAWS, SEARCHED_DRAWS, Survival};
 pub use measured::MeasuredErrors;
+pub(crate) use measured::MeasuredRow;
 pub(crate) use rest_aim::resting_at;

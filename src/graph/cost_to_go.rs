@@ -79,8 +79,7 @@ impl CostToGo {
     #[must_use]
     pub fn with_hops(&self, hops: u64) -> Self {
         let Some(fewest) = self.of_node(self.nodes.start()).map(Cost::hops) else { return self.clone() };
-        let (goal, extra) = (self.nodes.goal().index(), hops.saturating_sub(fewest));
-        let policy = self.policy.as_ref().map(|policy| policy.with_fewer_extra_hops(&self.costs, goal, extra));
+        let policy = self.policy.as_ref().map(|policy| policy.with_fewer_extra_hops(hops.saturating_sub(fewest)));
         Self { policy, ..self.clone() }
     }
 

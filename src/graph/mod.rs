@@ -10,6 +10,7 @@
 //! [`proof`] bounds the fewest hops from both sides, for every density.
 
 mod batched_search;
+mod corridor;
 mod cost;
 mod cost_to_go;
 mod edges;
@@ -27,9 +28,11 @@ mod refusals;
 mod reliability;
 mod reliability_policy;
 mod search;
+mod successors;
 mod thinned;
 mod usable;
 
+pub use corridor::{Beside, Corridor};
 pub use cost::{Cost, Effort, EffortUnit};
 pub use cost_to_go::CostToGo;
 pub use edges::{Edge, EdgeReference, HopGraph};

@@ -1,53 +1,33 @@
-//! A reliability policy: the successors of every node, the most reliable first.
+//! The reliability policy of the nodes of a chain: the successors of every node, the most reliable first.
 
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::{Cost, HopGraph, ReliabilityOptions, SearchOptions, judge::Judge, reliability::steps_from, thinned::kept_nodes};
+use super::{
+    Cost, HopGraph, ReliabilityOptions, SearchOptions,
+    judge::Judge,
+    reliability::{Step, steps_from},
+    successors::{Successor, Successors},
+    thinned::kept_nodes,
+};
 use crate::{
     progress::{Cancelled, Detail, Meter, PairCounter, Progress, Stage},
     quantity::NodeId,
 };
 
-/// The number of successors kept for each node. A robot near the node takes the first that is feasible from its actual
-/// position; if none of these is feasible, the remaining ones are unlikely to be more reliable than any feasible hop.
-const KEPT: usize = 32;
-
-/// For every node, its successors in order of the reliability of the rest of the path within the hop budget, the most reliable
-/// first.
+/// For every node of a chain, its successors in order of the reliability of the rest of the path within the hop budget, and the judge of
+/// the hops to them.
 #[derive(Clone, Debug)]
 pub(super) struct ReliabilityPolicy {
     judge: Judge,
     /// The nodes that it leads over; the others have no successors.
     kept: Arc<Vec<bool>>,
-    /// The edges out of every node within the hop budget that they were judged for.
-    edges: Arc<Vec<Vec<Successor>>>,
-    /// For every node, at most [`KEPT`] successors.
-    successors: Vec<Vec<NodeId>>,
-    /// For every node, the weight of the most reliable path to the goal, `-ln` of its estimated success probability; infinite
-    /// without such a path.
-    #[cfg(test)]
-    weights: Vec<f64>,
-}
-
-/// An edge on some path within the hop budget: its target, its hops, its weight.
-#[derive(Clone, Copy, Debug)]
-struct Successor {
-    target: usize,
-    hops: u64,
-    weight: f64,
+    successors: Successors,
 }
 
 impl ReliabilityPolicy {
-    /// Computes the policy from the least costs of all nodes. Let `W_k(u)` be the least weight from `u` with at most `k`
-    /// hops:
-    ///
-    /// ```text
-    ///     W_k(u) = min over edges (u, v) of n hops of  w(u, v) + W_(k - n)(v),   W_k(goal) = 0
-    /// ```
-    ///
-    /// for ascending `k` (Bellman 1958), from a node's fewest hops to the number that the options allow.
+    /// Computes the policy from the least costs of all nodes.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -63,83 +43,44 @@ impl ReliabilityPolicy {
     ) -> Result<Self, Cancelled> {
         let meter = Meter::new(progress, Stage::Reliability);
         meter.report(Detail::None)?;
-        let fewest = |node: usize| costs[node].map(Cost::hops);
-        let extra = reliability.extra_hops(fewest(graph.nodes().start().index()).unwrap_or(0));
+        let fewest: Vec<Option<u64>> = costs.iter().map(|cost| cost.map(Cost::hops)).collect();
+        let start = graph.nodes().start();
+        let extra = reliability.extra_hops(fewest[start.index()].unwrap_or(0));
         let goal = graph.nodes().goal().index();
         let judge = Judge::new(graph.test(), options, &reliability.model, reliability.goal_tolerance_m);
         // A robot that replans takes off where it believes to be, whatever came before.
         let takeoff_m2 = judge.takeoff_m2([0.0; 2]);
         let edges = |kept: &[bool], counter: &mut PairCounter<'_>, node: usize| -> Result<Vec<Successor>, Cancelled> {
             counter.check()?;
-            let Some(own) = fewest(node).filter(|_| node != goal && kept[node]) else { return Ok(Vec::new()) };
-            let of_use = |step: &super::reliability::Step| fewest(step.target).is_some_and(|rest| step.hops + rest <= own + extra);
+            let Some(own) = fewest[node].filter(|_| node != goal && kept[node]) else { return Ok(Vec::new()) };
+            let of_use = |step: &Step| fewest[step.target].is_some_and(|rest| step.hops + rest <= own + extra);
             let steps = steps_from(graph, kept, node, counter)?;
-            let weighed = |step: super::reliability::Step| {
+            let weighed = |step: Step| {
                 counter.pair()?;
                 let weight = judge.edge(graph, (node, step.target), takeoff_m2, f64::INFINITY).weight;
                 Ok(Successor { target: step.target, hops: step.hops, weight })
             };
             steps.into_iter().filter(of_use).map(weighed).collect()
         };
-        let all_edges = |kept: &[bool]| -> Result<Vec<_>, Cancelled> {
+        let successors = |kept: &[bool]| -> Result<Successors, Cancelled> {
             let of_node = |counter: &mut PairCounter<'_>, node: usize| edges(kept, counter, node);
             let edges = (0..costs.len()).into_par_iter().map_init(|| meter.counter(), of_node).collect::<Result<Vec<_>, _>>();
             meter.check()?;
-            edges
+            Ok(Successors::new(edges?, fewest.clone(), extra))
         };
-        let start = graph.nodes().start();
         let kept = kept_nodes(graph.test(), graph.nodes(), options, reliability);
-        let policy = Self::ranked(judge.clone(), (Arc::new(all_edges(&kept)?), Arc::new(kept)), (costs, goal), extra);
-        let leads_nowhere = fewest(start.index()).is_some_and(|hops| hops > 0) && policy.successors(start).is_empty();
+        let policy = Self { judge: judge.clone(), successors: successors(&kept)?, kept: Arc::new(kept) };
+        let leads_nowhere = fewest[start.index()].is_some_and(|hops| hops > 0) && policy.successors(start).is_empty();
         if !leads_nowhere || !policy.kept.contains(&false) {
             return Ok(policy);
         }
         let kept = vec![true; costs.len()];
-        Ok(Self::ranked(judge.clone(), (Arc::new(all_edges(&kept)?), Arc::new(kept)), (costs, goal), extra))
+        Ok(Self { successors: successors(&kept)?, kept: Arc::new(kept), ..policy })
     }
 
     /// The same with fewer hops allowed beyond the fewest.
-    pub(super) fn with_fewer_extra_hops(&self, costs: &[Option<Cost>], goal: usize, extra: u64) -> Self {
-        Self::ranked(self.judge.clone(), (Arc::clone(&self.edges), Arc::clone(&self.kept)), (costs, goal), extra)
-    }
-
-    fn ranked(
-        judge: Judge,
-        (edges, kept): (Arc<Vec<Vec<Successor>>>, Arc<Vec<bool>>),
-        (costs, goal): (&[Option<Cost>], usize),
-        extra: u64,
-    ) -> Self {
-        let fewest = |node: usize| costs[node].map(Cost::hops);
-        let mut table = Table::new(costs, extra);
-        for allowed in 0..=table.most_hops {
-            for node in (0..costs.len()).filter(|&node| node != goal) {
-                let Some(place) = table.place(node, allowed) else { continue };
-                let least = edges[node].iter().map(|edge| table.onward(edge, allowed)).fold(f64::INFINITY, f64::min);
-                table.weights[place] = least;
-            }
-        }
-        let ranked = |node: usize| -> Vec<NodeId> {
-            let Some(own) = fewest(node) else { return Vec::new() };
-            let allowed = own + extra;
-            let mut onward: Vec<(f64, u64, usize)> = edges[node]
-                .iter()
-                .map(|edge| (table.onward(edge, allowed), edge, allowed.saturating_sub(edge.hops)))
-                .filter(|&(weight, ..)| weight < f64::INFINITY)
-                .map(|(weight, edge, rest)| (weight, edge.hops + table.hops_of_use(edge.target, rest), edge.target))
-                .collect();
-            // Of equally reliable paths the one with the fewest hops comes first, so that hops without risk lead to the goal
-            // as well.
-            onward.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-            onward.into_iter().take(KEPT).map(|(.., target)| NodeId(target)).collect()
-        };
-        Self {
-            successors: (0..costs.len()).map(ranked).collect(),
-            #[cfg(test)]
-            weights: (0..costs.len()).map(|node| fewest(node).map_or(f64::INFINITY, |own| table.at(node, own + extra))).collect(),
-            judge,
-            kept,
-            edges,
-        }
+    pub(super) fn with_fewer_extra_hops(&self, extra: u64) -> Self {
+        Self { successors: self.successors.with_fewer_extra_hops(extra), ..self.clone() }
     }
 
     /// Whether it leads over a node.
@@ -154,63 +95,15 @@ impl ReliabilityPolicy {
 
     /// The successors of a node, the most reliable first; empty at the goal and if the goal cannot be reached from the node.
     pub(super) fn successors(&self, node: NodeId) -> &[NodeId] {
-        &self.successors[node.index()]
-    }
-}
-
-/// The least weights by node and number of hops allowed.
-struct Table<'a> {
-    costs: &'a [Option<Cost>],
-    extra: u64,
-    /// The largest number of hops that any node needs.
-    most_hops: u64,
-    /// For every node, the weight with its fewest hops, with one more, and so on.
-    weights: Vec<f64>,
-}
-
-impl<'a> Table<'a> {
-    /// The initial table: only the goal itself reaches the goal.
-    fn new(costs: &'a [Option<Cost>], extra: u64) -> Self {
-        let most_hops = costs.iter().flatten().map(|cost| cost.hops()).max().unwrap_or(0) + extra;
-        let mut weights = vec![f64::INFINITY; costs.len() * weights_each(extra)];
-        for (node, own) in weights.chunks_exact_mut(weights_each(extra)).enumerate() {
-            if costs[node].is_some_and(|cost| cost.hops() == 0) {
-                own.fill(0.0);
-            }
-        }
-        Self { costs, extra, most_hops, weights }
+        self.successors.of(node)
     }
 
-    /// The index of the weight of a node for a number of hops allowed; `None` if no path is that short, or if more hops are
-    /// allowed than needed.
-    fn place(&self, node: usize, allowed: u64) -> Option<usize> {
-        let more = allowed.checked_sub(self.costs[node]?.hops()).filter(|&more| more <= self.extra)?;
-        #[expect(clippy::cast_possible_truncation, reason = "a few hops more")]
-        Some(node * weights_each(self.extra) + more as usize)
+    /// The weight of the most reliable path from a node to the goal within the hop budget, `-ln` of its estimated success probability;
+    /// infinite without such a path.
+    #[cfg(test)]
+    fn weight(&self, node: NodeId) -> f64 {
+        self.successors.weight(node)
     }
-
-    /// The least weight of a node for a number of hops allowed.
-    fn at(&self, node: usize, allowed: u64) -> f64 {
-        self.place(node, allowed).map_or(f64::INFINITY, |place| self.weights[place])
-    }
-
-    /// The fewest hops of the most reliable path from a node for a number of hops allowed.
-    fn hops_of_use(&self, node: usize, allowed: u64) -> u64 {
-        let weight = self.at(node, allowed);
-        let fewer = (0..=allowed).rev().take_while(|&hops| self.place(node, hops).is_some() && self.at(node, hops) == weight);
-        fewer.last().unwrap_or(allowed)
-    }
-
-    /// The least weight of a path that continues with an edge, for a total number of hops allowed.
-    fn onward(&self, edge: &Successor, allowed: u64) -> f64 {
-        allowed.checked_sub(edge.hops).map_or(f64::INFINITY, |rest| edge.weight + self.at(edge.target, rest))
-    }
-}
-
-/// Number of weights kept for each node.
-#[expect(clippy::cast_possible_truncation, reason = "a few hops more")]
-const fn weights_each(extra: u64) -> usize {
-    extra as usize + 1
 }
 
 #[cfg(test)]
@@ -261,7 +154,7 @@ mod tests {
                     let graph = HopGraph::new(&test, &nodes, options.effort, options.takeoff, options.split);
                     let policy = ReliabilityPolicy::of(&graph, &costs, &options, &reliability, &()).unwrap();
                     let path = most_reliable_paths(&test, &nodes, &options, &reliability, &()).unwrap().pop().expect("a path");
-                    let weight = policy.weights[nodes.start().index()];
+                    let weight = policy.weight(nodes.start());
                     assert!((weight - path.weight).abs() <= 1e-12 * path.weight, "{start_m} m, {extra_hops_max:?}: {weight}");
                     bought += u32::from(weight < with_fewer && extra_hops_max > Some(0));
                     with_fewer = weight;

@@ -9,13 +9,14 @@
 //! The independent checker uses [`Surface`] alone; planners use [`Windows`], or a fast equivalent with the same results; trials
 //! follow arcs with [`FirstContact`].
 
-mod around_post;
 mod chain;
 mod chain_flight;
 mod dem;
 mod dem_flight;
 mod first_contact;
 mod height_field;
+mod hop_reach;
+mod landing_share;
 mod posts;
 mod surface;
 mod sweep;
@@ -25,6 +26,8 @@ pub use chain_flight::{ChainGround, ChainPosition};
 pub use dem::{DemGround, MapPosition, SliceProblem};
 pub use first_contact::{ContactFailure, FirstContact, Flight, LiftoffVelocity, Realization, TouchdownState};
 pub use height_field::HeightField;
+pub(crate) use hop_reach::HopReach;
+pub(crate) use landing_share::LandingScatter;
 pub(crate) use posts::Offset;
 pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostHopsSize, PostRefusal};
 #[cfg(test)]

@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{HopRecord, PropellantShortage, SimulationRecord, TotalsRecord, propellant_record::stores_lines, stated::stated};
+use super::{
+    DeratingRecord, HopRecord, PropellantShortage, SimulationRecord, TotalsRecord, propellant_record::stores_lines, stated::stated,
+};
 use crate::{
     graph::{Effort, EffortUnit},
     quantity::MapPoint,
@@ -56,6 +58,9 @@ pub struct MapAnswer {
     /// Single hops from every post, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mobility: Option<MobilityRecord>,
+    /// The shares of the limits that the maps, paths and their check are for; absent if they are for the whole limits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derating: Option<DeratingRecord>,
     /// One record for each goal, in the order given.
     pub goals: Vec<GoalRecord>,
 }
@@ -132,7 +137,7 @@ pub struct GoalRecord {
     pub return_hops: Option<Option<i16>>,
     /// The hops of one path of fewest hops (and of least effort, if an effort was requested), x along the path.
     pub path: Vec<HopRecord>,
-    /// Their totals; null: not reachable.
+    /// Their totals, with trials also the estimated success of the path; null: not reachable.
     pub totals: Option<TotalsRecord>,
     /// If the path takes more propellant than the machine has.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -166,7 +171,7 @@ pub struct MapSummary<'a> {
 }
 
 impl MapAnswer {
-    /// The summary of the maps; the caller adds the goals.
+    /// The summary of the maps; the caller adds the goals, and the shares of the limits.
     pub fn new(summary: &MapSummary<'_>) -> Self {
         let MapSummary { dem, lattice, out, .. } = *summary;
         let map = dem.georeference().every(lattice.stride);
@@ -216,6 +221,7 @@ impl MapAnswer {
                 farthest_hops: back.hops.iter().copied().fold(0, i16::max),
             }),
             mobility: summary.mobility.map(|mobility| MobilityRecord::new(mobility, lattice, &map)),
+            derating: None,
             goals: Vec::new(),
         }
     }
@@ -261,6 +267,9 @@ impl MapAnswer {
                 );
             }
             let _ = writeln!(text, "{beside}");
+        }
+        if let Some(derating) = &self.derating {
+            let _ = writeln!(text, "{}", derating.sentence());
         }
         if let (Some(most), Some(posts)) = (self.hops_max, self.not_searched_posts) {
             let _ = writeln!(text, "{}", not_searched(most, posts));
@@ -324,7 +333,11 @@ impl MapAnswer {
         }
         for goal in &self.goals {
             if let Some(simulation) = &goal.simulation {
-                let _ = write!(text, "\ngoal ({:.3}, {:.3}) m\n{}", goal.x_m, goal.y_m, simulation.text());
+                let _ = writeln!(text, "\ngoal ({:.3}, {:.3}) m", goal.x_m, goal.y_m);
+                if let Some(estimate) = goal.totals.as_ref().and_then(|totals| totals.estimate) {
+                    let _ = writeln!(text, "{}", estimate.line());
+                }
+                text.push_str(&simulation.text());
             }
         }
         text

@@ -4,7 +4,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::text::Sheet;
-use crate::{graph::ReliablePath, uncertainty::Policy};
+use crate::{
+    graph::ReliablePath,
+    uncertainty::{ESTIMATE_TRIALS, Policy},
+};
 
 /// How reliably a path is flown, by fixed trials: the same for every question, whatever the seed of the scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -17,11 +20,17 @@ pub struct SuccessEstimate {
 }
 
 impl SuccessEstimate {
+    /// The estimate as a line.
+    pub(super) fn line(&self) -> String {
+        let Self { success_estimated, success_policy } = self;
+        format!("estimated success: {success_estimated:.4} under {success_policy}, by {ESTIMATE_TRIALS} fixed trials")
+    }
+
     /// The estimate as text, with what fewer hops would cost: `rows` are the front that the path of `hops` hops was chosen from.
     pub(super) fn text(&self, rows: &[ReliablePathRecord], hops: Option<u64>) -> String {
-        let Self { success_estimated, success_policy } = self;
+        let Self { success_estimated, .. } = self;
         let mut sheet = Sheet::default();
-        sheet.line(format_args!("\nestimated success: {success_estimated:.4} under {success_policy}, by 512 fixed trials"));
+        sheet.line(format_args!("\n{}", self.line()));
         let fewer = rows.iter().filter(|row| hops.is_some_and(|hops| row.hops < hops));
         let least = fewer.filter_map(|row| Some((row.hops, row.estimated_success?))).find(|(_, share)| share < success_estimated);
         if let Some((hops, share)) = least {

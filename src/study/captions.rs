@@ -40,8 +40,11 @@ impl fmt::Display for SpeedLimit {
     }
 }
 
-/// The assumptions of an answer over a map: body, gravity, hopper limits and ground, in the words of the pictures of plans.
+/// The assumptions of an answer over a map: body, gravity, hopper limits and ground, in the words of the pictures of plans. The limits are
+/// those that planning may use.
 pub fn conditions(scenario: &Scenario) -> String {
+    let derated = scenario.derated();
+    let scenario = derated.as_ref().unwrap_or(scenario);
     let (hopper, body) = (&scenario.hopper, &scenario.body);
     let bounds_m_s = (hopper.limits().takeoff_speed_max_m_s, hopper.limits().landing_speed_max_m_s);
     figure::conditions(body.name.as_deref().unwrap_or_default(), body.gravity.m_s2(), hopper, bounds_m_s, &format_ground(scenario))

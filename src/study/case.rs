@@ -6,7 +6,8 @@ use std::{
 };
 
 use super::{
-    CaseRecord, JourneyEnd, PipelineError, Prepared, Survey, pipeline::planned_over, prepare, scenario_files, with_measured_errors,
+    CaseRecord, JourneyEnd, Overlays, PipelineError, Prepared, Survey, footprint::SlicedDem, pipeline::planned_over,
+    scenario_files, with_measured_errors,
 };
 use crate::{
     chain::Station,
@@ -50,8 +51,10 @@ pub struct Case {
     derated: Option<Box<Prepared>>,
     /// The commands that the chain is prepared for.
     commands: Commands,
-    /// The whole raster with its overlays, once trials have read it.
-    pub(super) raster: Arc<OnceLock<DemGround>>,
+    /// The DEM that the chain was sliced from, whose posts are shared by all cases over this terrain, and its overlays.
+    pub(super) sliced: Option<(SlicedDem, Overlays)>,
+    /// The whole ground of this case, once trials have flown over it.
+    pub(super) ground: Arc<OnceLock<DemGround>>,
 }
 
 /// The scenario under the limits that planning may use, for these commands.
@@ -87,13 +90,14 @@ impl Case {
         let terrain = scenario.terrain.as_ref().ok_or(CaseError::NoTerrain)?;
         let hopper = commands.hopper(&scenario.hopper);
         let whole = Scenario { hopper, ..scenario.clone() };
+        let survey = Survey::of(&whole, terrain, base)?;
         if scenario.derating.is_none() {
-            let mut prepared = prepare(&whole, terrain, base)?;
+            let mut prepared = survey.prepare_with_ground(&whole)?;
             let (scenario, of_errors) = with_measured_errors(scenario, base)?;
             prepared.warnings.extend(of_errors);
-            return Ok(Self { scenario, base: base.to_path_buf(), prepared, derated: None, commands, raster: Arc::default() });
+            let (sliced, ground) = (survey.sliced(), Arc::default());
+            return Ok(Self { scenario, base: base.to_path_buf(), prepared, derated: None, commands, sliced, ground });
         }
-        let survey = Survey::of(&whole, terrain, base)?;
         let mut case = Self::over(&survey, scenario, base, commands)?;
         case.prepared.beside_line = survey.beside_line(&whole)?;
         let beside_line = case.prepared.beside_line.as_deref().map(|ground| Arc::new(planned_over(ground, &whole)));
@@ -118,7 +122,8 @@ impl Case {
         let derated = derated.map(|derated| survey.prepare_derated(&whole, &derated)).transpose()?.map(Box::new);
         let mut prepared = survey.prepare(&whole)?;
         prepared.warnings.extend(of_errors);
-        Ok(Self { prepared, scenario, base: base.to_path_buf(), derated, commands, raster: Arc::default() })
+        let (sliced, ground) = (survey.sliced(), Arc::default());
+        Ok(Self { prepared, scenario, base: base.to_path_buf(), derated, commands, sliced, ground })
     }
 
     /// The same case for these commands: its chain is prepared again if they make a difference.

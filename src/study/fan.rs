@@ -11,7 +11,7 @@ use crate::{
     progress::Progress,
     quantity::{Angle, MapPoint},
     reach::{FanError, FanRay, FanRequest, FanSize, fan_size},
-    report::{FanAnswer, SizeAnswer, SizeRecord},
+    report::{DeratingRecord, FanAnswer, SizeAnswer, SizeRecord},
     scenario::Scenario,
     terrain::{MapPlace, MapProjection, NoProjection, TerrainError, check_scale},
 };
@@ -161,6 +161,7 @@ impl PreparedFan {
         #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
         let range_m = bands.filter_map(|band| Some(band.to_m / band.hops.filter(|hops| *hops > 0)? as f64)).fold(0.0, f64::max);
         warnings.extend(constant_gravity_warnings(&question.scenario.body, Extremes { range_m, ..Extremes::default() }));
+        warnings.extend(DeratingRecord::of(&question.scenario.derating).map(|derating| derating.sentence()));
         let mut answer = FanAnswer::new(self.from, question.length_m, &rays, self.projection.as_ref().ok());
         match self.spacing {
             PointSpacing::PerSegment(points) => answer.points_per_segment = Some(points),

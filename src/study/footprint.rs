@@ -1,6 +1,9 @@
-//! What is read of a DEM beside its slice: the ground under a scenario's footprint, and that of hops beside the line.
+//! What is read of a DEM beside its slice: the ground under a scenario's footprint, and the whole of it for hops beside the line.
 
-use std::{path::PathBuf, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::{Arc, OnceLock},
+};
 
 use super::{DemReading, Overlays, PipelineError};
 use crate::{
@@ -8,7 +11,7 @@ use crate::{
     path::heading_deg,
     quantity::format_number,
     scenario::Scenario,
-    terrain::{GeoReference, Profile, Surroundings},
+    terrain::{Dem, GeoReference, Profile, Surroundings, TerrainError},
     world::Hopper,
 };
 
@@ -31,19 +34,21 @@ pub fn coarse_dem_warning(hopper: &Hopper, map: &GeoReference) -> Option<String>
     })
 }
 
-/// A DEM that was sliced, of which the posts around the slice are read when a hopper has a footprint.
+/// A DEM that was sliced, of which the posts around the slice are read when a hopper has a footprint, and all of them when a hop may leave it.
 #[derive(Clone, Debug)]
 pub(super) struct SlicedDem {
     file: PathBuf,
     reading: DemReading,
     /// What was read for the first hopper, and its footprint, m.
     read: Option<(f64, Arc<Surroundings>)>,
+    /// All posts, once they were read: by any clone, for all.
+    whole: Arc<OnceLock<Arc<Dem>>>,
 }
 
 impl SlicedDem {
     /// The DEM of a file, with the posts around its slice for a hopper.
     pub(super) fn of(file: PathBuf, reading: DemReading, legs: &[Profile], hopper: &Hopper) -> Result<Self, PipelineError> {
-        let mut sliced = Self { file, reading, read: None };
+        let mut sliced = Self { file, reading, read: None, whole: Arc::default() };
         sliced.read = footprint_m(hopper).zip(sliced.around(legs, hopper)?);
         Ok(sliced)
     }
@@ -64,7 +69,25 @@ impl SlicedDem {
         if steps.heading.is_none() || legs.iter().all(has) {
             return Ok(None);
         }
-        Ok(Some(Arc::new(overlays.ground(self.reading.options.read(&self.file)?, scenario))))
+        Ok(Some(Arc::new(overlays.ground(self.whole()?, scenario))))
+    }
+
+    /// Its file.
+    pub(super) fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// All posts, which the first call reads. Calls at the same time do not wait for each other and may all read: a reader that works in
+    /// several threads of the pool must not be waited for by one of them.
+    ///
+    /// # Errors
+    /// As [`DemOptions::read`](crate::terrain::DemOptions::read); the next call tries again.
+    pub(super) fn whole(&self) -> Result<Arc<Dem>, TerrainError> {
+        if let Some(dem) = self.whole.get() {
+            return Ok(Arc::clone(dem));
+        }
+        let dem = Arc::new(self.reading.options.read(&self.file)?);
+        Ok(Arc::clone(self.whole.get_or_init(|| dem)))
     }
 
     /// The posts around the slice for a hopper; `None` if it has no footprint.

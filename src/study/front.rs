@@ -1,14 +1,20 @@
 //! The front of hops against success: every path estimated by fixed trials, and the one to fly.
 
-use std::sync::Arc;
+use std::{borrow::Cow, sync::Arc};
 
-use super::{Case, JourneyError, SimulateError, dem_ground::dem_ground, journey::Searched, pipeline::planned_over};
+use super::{
+    Case, JourneyError, SimulateError,
+    dem_ground::dem_ground,
+    journey::Searched,
+    pipeline::planned_over,
+    to_go::{Replanning, ToGo},
+};
 use crate::{
     ballistics::TakeoffChoice,
     chain::Station,
     graph::{
-        self, CostToGo, NodeSet, Outcome, ReliabilityUse, ReliablePath, RiskModel, TakeoffScatter, most_reliable_paths,
-        path_within_budget, preferred_path,
+        self, Beside, Corridor, CostToGo, NodeSet, Outcome, ReliabilityOptions, ReliabilityUse, ReliablePath, RiskModel,
+        TakeoffScatter, most_reliable_paths, path_within_budget, preferred_path,
     },
     ground::{DemGround, Surface},
     hop::HopTest,
@@ -187,8 +193,8 @@ pub(super) fn front(
 pub(super) struct Estimated {
     /// What the budget says of the path to fly; `None` without a budget or without a path.
     pub(super) budget: Option<SuccessBudgetRecord>,
-    /// The costs by which its trials replan, with as many hops as the scenario allows; `None` open loop.
-    pub(super) to_go: Option<Arc<CostToGo>>,
+    /// What the trials of the path to fly replan by; `None` open loop.
+    pub(super) to_go: Option<ToGo>,
 }
 
 /// A journey whose paths are flown in trials.
@@ -208,7 +214,7 @@ pub(super) struct FlownJourney<'a> {
 
 impl FlownJourney<'_> {
     /// The trials along a path; replanned by these costs, if there are any.
-    pub(super) fn simulation(&self, path: &HopPath, to_go: Option<&Arc<CostToGo>>) -> Result<Simulation, SimulateError> {
+    pub(super) fn simulation(&self, path: &HopPath, to_go: Option<&ToGo>) -> Result<Simulation, SimulateError> {
         self.simulation_under(path, to_go, self.scenario.uncertainty.clone().unwrap_or_default().errors)
     }
 
@@ -216,7 +222,7 @@ impl FlownJourney<'_> {
     pub(super) fn simulation_under(
         &self,
         path: &HopPath,
-        to_go: Option<&Arc<CostToGo>>,
+        to_go: Option<&ToGo>,
         errors: Uncertainty,
     ) -> Result<Simulation, SimulateError> {
         let (start, goal) = self.ends;
@@ -229,52 +235,119 @@ impl FlownJourney<'_> {
         };
         let mission = match (to_go, self.ground) {
             (None, _) => mission,
-            (Some(to_go), Some(ground)) if self.whole.is_some() => {
-                let planned = planned_over(ground, self.scenario);
-                mission.with_replanning(self.test.clone(), Arc::clone(to_go)).planned_over(planned)
+            (Some(ToGo::Corridor(corridor)), _) => mission.with_replanning_beside_the_line(Arc::clone(corridor)),
+            (Some(ToGo::Line(costs)), ground) => {
+                let mission = mission.with_replanning(self.test.clone(), Arc::clone(costs));
+                let derated = ground.filter(|_| self.whole.is_some());
+                derated.map(|ground| planned_over(ground, self.scenario)).map_or(mission.clone(), |over| mission.planned_over(over))
             }
-            (Some(to_go), _) => mission.with_replanning(self.test.clone(), Arc::clone(to_go)),
         };
         Ok(Simulation::new(&mission, errors)?)
     }
 
-    /// The costs by which trials replan over the nodes of an answer, with as many hops as the scenario allows: see
-    /// [`CostToGo::with_hops`] for those of a path.
-    pub(super) fn costs_to_go(&self, found: &graph::Answer, progress: &dyn Progress) -> Result<CostToGo, SimulateError> {
-        let nodes = NodeSet::new(self.test.chain(), self.ends.0, self.ends.1, found.spacing)?;
-        let options = &self.scenario.search;
-        let reliability = self.scenario.reliability(self.ground);
-        let Some(mut reliability) = reliability.map(|reliability| reliability.flown_under(self.whole.as_ref())) else {
-            return Ok(CostToGo::of(self.test, nodes, options, progress)?);
-        };
+    /// What trials replan by over the nodes of an answer.
+    pub(super) fn replanning(&self, found: &graph::Answer, progress: &dyn Progress) -> Result<Replanning, SimulateError> {
+        let (nodes, options) = (self.nodes(found)?, &self.scenario.search);
+        Ok(Replanning::new(match self.replanned_reliability() {
+            None => CostToGo::of(self.test, nodes, options, progress)?,
+            Some(reliability) => CostToGo::with_reliability(self.test, nodes, options, &reliability, progress)?,
+        }))
+    }
+
+    fn nodes(&self, found: &graph::Answer) -> Result<NodeSet, SimulateError> {
+        Ok(NodeSet::new(self.test.chain(), self.ends.0, self.ends.1, found.spacing)?)
+    }
+
+    /// How a robot that replans weighs reliability; `None` if it does not.
+    fn replanned_reliability(&self) -> Option<ReliabilityOptions> {
+        let mut reliability = self.scenario.reliability(self.ground)?.flown_under(self.whole.as_ref());
         if let RiskModel::Flown { takeoffs, .. } = &mut reliability.model {
             *takeoffs = TakeoffScatter::OfPosition;
         }
-        Ok(CostToGo::with_reliability(self.test, nodes, options, &reliability, progress)?)
+        Some(reliability)
     }
 
-    /// The costs by which trials of the path of an answer replan; `known`: those of all hops, where the choice of the path computed them.
-    pub(super) fn costs_of_path(
+    /// What trials replan by over one kind of places beside the line, for a path of this many hops; `None` where the robot stays on the line.
+    fn beside_the_line(
         &self,
         found: &graph::Answer,
-        known: Option<&Arc<CostToGo>>,
+        (replanning, beside): (&Replanning, Beside),
+        hops: Option<u64>,
         progress: &dyn Progress,
-    ) -> Result<Arc<CostToGo>, SimulateError> {
-        let all = known.map_or_else(|| self.costs_to_go(found, progress).map(Arc::new), |known| Ok(Arc::clone(known)))?;
-        Ok(found.hops().map_or_else(|| Arc::clone(&all), |hops| Arc::new(all.with_hops(hops))))
+    ) -> Result<Option<ToGo>, SimulateError> {
+        let slot = &replanning.beside[beside as usize];
+        let corridor = match (slot.get(), self.ground, self.replanned_reliability()) {
+            (Some(known), ..) => known.as_ref(),
+            (None, Some(ground), Some(reliability)) => {
+                let over =
+                    if self.whole.is_some() { Cow::Owned(planned_over(ground, self.scenario)) } else { Cow::Borrowed(ground) };
+                let (nodes, options) = (self.nodes(found)?, &self.scenario.search);
+                let corridor = Corridor::new(self.test, &nodes, options, (&reliability, &over, beside), progress)?;
+                slot.get_or_init(|| corridor).as_ref()
+            }
+            _ => None,
+        };
+        Ok(corridor
+            .map(|corridor| ToGo::Corridor(Arc::new(hops.map_or_else(|| corridor.clone(), |hops| corridor.with_hops(hops))))))
     }
 
-    /// The share of fixed trials of one path that reach the goal. `known`: as in [`costs_of_path`](Self::costs_of_path).
+    /// The share of fixed trials of one path that reach the goal, and what they replan by; open loop without `replanning`.
+    ///
+    /// A robot over a DEM stays on the line where that is reliable. Where it reaches the goal in less than 0.98 of the trials, robots are flown
+    /// that may leave the line over posts, then over flat facets, and the best of them counts. `hops`: those that the path has, where it is known.
+    fn flown(
+        &self,
+        (found, replanning): (&graph::Answer, Option<&Replanning>),
+        (path, hops): (&HopPath, Option<u64>),
+        options: &TrialOptions,
+        progress: &dyn Progress,
+    ) -> Result<(f64, Option<ToGo>), SimulateError> {
+        const RELIABLE: f64 = 0.98;
+        let success = |to_go: Option<&ToGo>| -> Result<f64, SimulateError> {
+            Ok(self.simulation(path, to_go)?.estimated_success(options, progress)?)
+        };
+        let Some(replanning) = replanning else { return Ok((success(None)?, None)) };
+        let line = replanning.along_line(hops);
+        let mut best = (success(Some(&line))?, Some(line));
+        for beside in Beside::ALL {
+            if best.0 >= RELIABLE {
+                break;
+            }
+            let Some(to_go) = self.beside_the_line(found, (replanning, beside), hops, progress)? else { break };
+            let aside = success(Some(&to_go))?;
+            if aside > best.0 {
+                best = (aside, Some(to_go));
+            }
+        }
+        Ok(best)
+    }
+
+    /// The share of fixed trials of the path of an answer that reach the goal, and what trials of it replan by; `None` open loop.
     pub(super) fn success_of(
         &self,
-        (found, known): (&graph::Answer, Option<&Arc<CostToGo>>),
+        found: &graph::Answer,
         path: &HopPath,
         options: &TrialOptions,
         progress: &dyn Progress,
-    ) -> Result<f64, SimulateError> {
+    ) -> Result<(f64, Option<ToGo>), SimulateError> {
         let replans = options.policy == Policy::Replan;
-        let to_go = replans.then(|| self.costs_of_path(found, known, progress)).transpose()?;
-        Ok(self.simulation(path, to_go.as_ref())?.estimated_success(options, progress)?)
+        let replanning = replans.then(|| self.replanning(found, progress)).transpose()?;
+        self.flown((found, replanning.as_ref()), (path, found.hops()), options, progress)
+    }
+
+    /// What trials of the path of an answer replan by.
+    pub(super) fn to_go_of(
+        &self,
+        found: &graph::Answer,
+        path: &HopPath,
+        options: &TrialOptions,
+        progress: &dyn Progress,
+    ) -> Result<Option<ToGo>, SimulateError> {
+        let has_choice = self.ground.is_some() && self.replanned_reliability().is_some();
+        if !has_choice {
+            return Ok(Some(self.replanning(found, progress)?.along_line(found.hops())));
+        }
+        Ok(self.success_of(found, path, &TrialOptions { policy: Policy::Replan, ..*options }, progress)?.1)
     }
 
     /// Estimates the success of the paths of a front, and takes the one to fly: [`preferred_path`], or under a budget of success
@@ -291,10 +364,11 @@ impl FlownJourney<'_> {
         let stays = legs.is_empty();
         let least = self.scenario.budget.estimated_success_min;
         // A budget is not refused for a path that was not flown.
-        let to_go = self.fly_front(found, front, if least.is_some() { usize::MAX } else { FLOWN_MAX }, progress)?;
+        let mut to_go = self.fly_front(found, front, if least.is_some() { usize::MAX } else { FLOWN_MAX }, progress)?;
         let within = least.and_then(|least| path_within_budget(front, least));
-        let preferred = within.map(|(path, _)| path).or_else(|| preferred_path(front));
-        let preferred = preferred.and_then(|preferred| front.get(preferred));
+        let number = within.map(|(path, _)| path).or_else(|| preferred_path(front));
+        let to_go = number.and_then(|number| to_go.get_mut(number)?.take());
+        let preferred = number.and_then(|number| front.get(number));
         if let Some(path) = preferred {
             found.follow(path);
         }
@@ -309,26 +383,28 @@ impl FlownJourney<'_> {
     /// A robot that replans and may take more hops is another robot: every path is estimated with the hops that it has.
     ///
     /// # Returns
-    /// The costs by which it replans, with as many hops as the scenario allows; `None` open loop, and if no path is flown.
+    /// What the trials of each path replan by; `None` open loop, and if the path is not flown.
     pub(super) fn fly_front(
         &self,
         found: &graph::Answer,
         front: &mut [ReliablePath],
         most: usize,
         progress: &dyn Progress,
-    ) -> Result<Option<Arc<CostToGo>>, SimulateError> {
+    ) -> Result<Vec<Option<ToGo>>, SimulateError> {
         let unknown: Vec<usize> = flown_of(front.len(), most).filter(|&number| front[number].success.is_none()).collect();
-        let Some(keys) = self.scenario.uncertainty.as_ref().filter(|_| !unknown.is_empty()) else { return Ok(None) };
+        let Some(keys) = self.scenario.uncertainty.as_ref().filter(|_| !unknown.is_empty()) else { return Ok(Vec::new()) };
         let replans = keys.policy == Policy::Replan;
-        let all = replans.then(|| self.costs_to_go(found, progress)).transpose()?.map(Arc::new);
+        let replanning = replans.then(|| self.replanning(found, progress)).transpose()?;
+        let mut to_go = vec![None; front.len()];
         for number in unknown {
             let path = &mut front[number];
             // A path of too many hops to list, or without commands of the machine, is not flown.
             let Ok(hops) = self.generated(path) else { continue };
-            let to_go = all.as_ref().map(|all| Arc::new(all.with_hops(path.cost.hops())));
-            path.success = Some(self.simulation(&hops, to_go.as_ref())?.estimated_success(&keys.options(), progress)?);
+            let of_path = (&hops, Some(path.cost.hops()));
+            let (success, by) = self.flown((found, replanning.as_ref()), of_path, &keys.options(), progress)?;
+            (path.success, to_go[number]) = (Some(success), by);
         }
-        Ok(all)
+        Ok(to_go)
     }
 
     fn generated(&self, path: &ReliablePath) -> Result<HopPath, PathError> {

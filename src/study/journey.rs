@@ -1,17 +1,16 @@
 //! The search for a journey, and the proof where one is requested: what check, plan, compare and require share.
 
-use std::sync::Arc;
-
 use super::{
     Case, CaseError, SimulateError,
     dem_ground::dem_ground,
     front::{Estimated, FlownJourney},
     objective::{ByObjective, by_objective},
+    to_go::ToGo,
 };
 use crate::{
     chain::Station,
     graph::{
-        self, CostToGo, Outcome, ReliabilityUse, ReliablePath, SearchError,
+        self, Outcome, ReliabilityUse, ReliablePath, SearchError,
         proof::{Bounds, BoundsOptions, bounds},
         search_most_reliable,
     },
@@ -68,8 +67,8 @@ pub(super) struct Searched {
     pub(super) objective: Option<ObjectiveRecord>,
     /// What is to be known about a plan by objective.
     pub(super) warnings: Vec<String>,
-    /// The costs by which trials replan, where the choice of the path computed them.
-    pub(super) to_go: Option<Arc<CostToGo>>,
+    /// What trials of the path replan by, where the choice of the path found it.
+    pub(super) to_go: Option<ToGo>,
     /// The bounds, and the budget of cells.
     pub(super) proof: Option<(Bounds, usize)>,
 }
@@ -141,7 +140,7 @@ impl Searched {
         let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
         let success_estimated = match known {
             Some(share) => share,
-            None => journey.success_of((&self.found, self.to_go.as_ref()), path, &keys.options(), progress).map_err(Box::new)?,
+            None => journey.success_of(&self.found, path, &keys.options(), progress).map_err(Box::new)?.0,
         };
         let success = SuccessEstimate { success_estimated, success_policy: keys.policy };
         let simulation = journey.simulation(path, None).map_err(Box::new)?;

@@ -43,6 +43,7 @@ mod sense;
 mod sensitivity;
 mod simulate;
 pub mod slice;
+mod to_go;
 mod trade;
 mod traded;
 mod trajectory;

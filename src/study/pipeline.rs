@@ -154,9 +154,7 @@ fn measured_problems(path: &Path, problems: &[UncertaintyProblem]) -> String {
 /// # Errors
 /// [`PipelineError`].
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
-    let survey = Survey::of(scenario, source, base)?;
-    let beside_line = survey.beside_line(scenario)?;
-    Ok(Prepared { beside_line, ..survey.prepare(scenario)? })
+    Survey::of(scenario, source, base)?.prepare_with_ground(scenario)
 }
 
 /// The terrain of a scenario, read and sliced once. Chains for any hopper, grip and search are prepared from it.
@@ -220,6 +218,20 @@ impl Survey {
     /// [`PipelineError`], if segments are left without constraints or an end lies off the chain.
     pub fn prepare(&self, scenario: &Scenario) -> Result<Prepared, PipelineError> {
         self.prepared(scenario, &Derating::NONE)
+    }
+
+    /// The same with the ground beside the line.
+    pub(super) fn prepare_with_ground(&self, scenario: &Scenario) -> Result<Prepared, PipelineError> {
+        let beside_line = self.beside_line(scenario)?;
+        Ok(Prepared { beside_line, ..self.prepare(scenario)? })
+    }
+
+    /// The DEM that was sliced, with its overlays; `None` if the terrain is a mesh or a chain.
+    pub(super) fn sliced(&self) -> Option<(SlicedDem, Overlays)> {
+        match &self.ground {
+            Surveyed::Slice { overlays, dem, .. } => Some((dem.clone()?, overlays.as_ref().clone())),
+            Surveyed::Chain(_) => None,
+        }
     }
 
     /// The ground beside the line, where a hopper with headings in steps leaves it.
@@ -417,7 +429,7 @@ impl Overlays {
     }
 
     /// The ground of a whole DEM under these overlays, for a scenario's hopper, gravity and surface.
-    pub fn ground(&self, dem: Dem, scenario: &Scenario) -> DemGround {
+    pub fn ground(&self, dem: impl Into<Arc<Dem>>, scenario: &Scenario) -> DemGround {
         let terrain = OverlaidDem::new(dem, Arc::clone(&self.overlays));
         DemGround::new(terrain, &scenario.hopper, scenario.body.gravity, &scenario.surface)
     }

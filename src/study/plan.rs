@@ -1,15 +1,13 @@
 //! The path of fewest hops, then least effort.
 
-use std::{
-    io::{self, Write},
-    sync::Arc,
-};
+use std::io::{self, Write};
 
 use super::{
     Case, CaseError, Commands, Front, FrontProblem, JourneyError, Proof, SimulateError,
     dem_ground::dem_ground,
     front::{amount_front, front},
     journey::Searched,
+    to_go::ToGo,
 };
 #[cfg(feature = "plot")]
 use crate::figure::{
@@ -18,7 +16,7 @@ use crate::figure::{
 };
 use crate::{
     chain::Station,
-    graph::{self, CostToGo},
+    graph,
     ground::DemGround,
     hop::HopTest,
     path::{Execution, HopPath, TooManyHops, Violation},
@@ -114,8 +112,8 @@ pub struct Planned {
     pub answer: PlanAnswer,
     /// The warnings about the path.
     pub warnings: Vec<String>,
-    /// The costs by which trials replan, with as many hops as the scenario allows, where the choice of the path computed them.
-    pub(super) to_go: Option<Arc<CostToGo>>,
+    /// What trials of the path replan by, where the choice of the path found it.
+    pub(super) to_go: Option<ToGo>,
 }
 
 /// Plans the path of fewest hops, then least effort; proves bounds and flies the path again if that is wanted.
@@ -184,7 +182,7 @@ impl Planned {
     /// The whole raster with its overlays, for flights in three dimensions; `None` if the terrain is a mesh or a chain.
     ///
     /// # Errors
-    /// [`SimulateError::Dem`] and [`SimulateError::Overlay`].
+    /// [`SimulateError::Dem`].
     pub fn dem_ground(&self) -> Result<Option<DemGround>, SimulateError> {
         dem_ground(&self.case)
     }

@@ -8,7 +8,7 @@ use super::{Case, CaseError, Commands, JourneyError, PipelineError, Survey, ask_
 use crate::{
     chain::Station,
     graph::{
-        Answer, Outcome, SearchError, SearchOptions,
+        Answer, Outcome, ReliabilityUse, SearchError, SearchOptions,
         proof::{BoundsOptions, ProofVerdict, bounds_of},
         search_one,
     },
@@ -346,6 +346,7 @@ impl<'a> Trade<'a> {
         for axis in 0..self.swept.len() {
             self.check_effect(axis, &meter)?;
         }
+        self.read_ahead();
         let row = |cell| -> Result<Result<TradeRow, CellError>, Cancelled> {
             meter.check()?;
             let row = match self.row(&self.at(cell), proof_budget_cells, &meter) {
@@ -367,6 +368,20 @@ impl<'a> Trade<'a> {
         }
         let vary = self.swept.iter().map(|v| SweptKeyRecord { key: v.key.path(), values: v.values.clone() }).collect();
         Ok(TradedCells { answer: TradeAnswer { vary, rows }, failed })
+    }
+
+    /// Reads the whole raster where trials over it estimate a success, so that the cells, which are answered side by side, find it read. What is
+    /// wrong with it, they say.
+    fn read_ahead(&self) {
+        let flies = |scenario: &Scenario| {
+            let estimates = scenario.budget.estimated_success_min.is_some() && scenario.uncertainty.is_some();
+            estimates && scenario.risk != ReliabilityUse::Ignored
+        };
+        // The cells differ in numbers, not in whether they fly.
+        let first = (0..self.cells()).find_map(|cell| self.scenario(&self.at(cell)).ok());
+        if let Some((sliced, _)) = first.filter(flies).and_then(|_| self.survey.sliced()) {
+            let _ = sliced.whole();
+        }
     }
 
     /// The values of a cell by their keys.

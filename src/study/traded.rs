@@ -3,7 +3,10 @@
 use super::{Case, CellError, Proof, SweptKey, Trade, TradeError, TradedCells, Variation};
 #[cfg(feature = "plot")]
 use crate::figure::{FigureError, Picture, TradeFigure, draw_trade};
-use crate::{progress::Progress, report::TradeAnswer};
+use crate::{
+    progress::Progress,
+    report::{DeratingRecord, TradeAnswer},
+};
 
 /// A verdict for every value of one or two keys, with everything that its views need.
 #[derive(Debug)]
@@ -41,7 +44,13 @@ pub fn trade(
 ) -> Result<Traded, TradeError> {
     let trade = Trade::new(&variation.entries, variation.base(), &variation.survey, swept)?;
     let TradedCells { answer, failed } = trade.run(proof.map(|proof| proof.budget_cells), progress)?;
-    Ok(Traded { first: variation.first.clone(), warnings: answer.warnings(), answer, failed })
+    let first = variation.first.clone();
+    let mut warnings = answer.warnings();
+    // Where the shares are varied, the rows have them.
+    let shares_vary = swept.iter().any(|key| key.key().table == "derating");
+    let derating = DeratingRecord::of(&first.scenario.derating).filter(|_| !shares_vary);
+    warnings.extend(derating.map(|derating| derating.sentence()));
+    Ok(Traded { first, answer, warnings, failed })
 }
 
 #[cfg(feature = "plot")]

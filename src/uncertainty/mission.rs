@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 use crate::{
     chain::Station,
-    graph::{CostToGo, PostCosts, PostRisks},
+    graph::{Corridor, CostToGo, PostCosts, PostRisks},
     ground::{ChainGround, ContactPoint, DemGround, Surface},
     hop::HopTest,
     path::HopPath,
@@ -26,6 +26,8 @@ pub struct Mission {
     pub(super) start: ContactPoint,
     pub(super) goal: ContactPoint,
     pub(super) replanning: Option<Replanning>,
+    /// The ground under the limits that planning may use, over a DEM; `None`: that of the trials.
+    pub(super) planned_over: Option<Arc<DemGround>>,
 }
 
 /// The ground of the trials.
@@ -39,12 +41,9 @@ pub(super) enum MissionGround {
 #[derive(Clone, Debug)]
 pub(super) enum Replanning {
     /// The chain of the nodes, and the cost-to-go of each node.
-    Nodes {
-        test: Box<HopTest>,
-        to_go: Arc<CostToGo>,
-        /// The ground under the limits that planning may use, over a DEM; `None`: that of the trials.
-        over: Option<Box<DemGround>>,
-    },
+    Nodes { test: Box<HopTest>, to_go: Arc<CostToGo> },
+    /// The nodes of a transect and the places beside it.
+    Corridor(Arc<Corridor>),
     /// The costs-to-go of the posts of the DEM.
     PostCosts(Arc<PostCosts>),
     /// The risks-to-go of the posts of the DEM.
@@ -55,12 +54,12 @@ impl Mission {
     /// A path along a chain: flights stay in its vertical plane.
     pub fn along_chain(test: HopTest, path: HopPath, start: Station, goal: Station) -> Self {
         let [start, goal] = [start, goal].map(|station| test.chain().contact_point(&station));
-        Self { ground: MissionGround::Chain(ChainGround::new(test)), path, start, goal, replanning: None }
+        Self { ground: MissionGround::Chain(ChainGround::new(test)), path, start, goal, replanning: None, planned_over: None }
     }
 
     /// A path over a DEM, in any direction: flights follow their heading.
     pub const fn over_dem(ground: DemGround, path: HopPath, start: ContactPoint, goal: ContactPoint) -> Self {
-        Self { ground: MissionGround::Map(ground), path, start, goal, replanning: None }
+        Self { ground: MissionGround::Map(ground), path, start, goal, replanning: None, planned_over: None }
     }
 
     /// SHA-256 of all that trials depend on, besides errors and options, in hexadecimal: equal for the same mission and the same version
@@ -72,16 +71,17 @@ impl Mission {
         let _ = match &self.ground {
             MissionGround::Chain(ground) => chain_text(&mut digest, ground.test()),
             MissionGround::Map(ground) => {
-                let overlays = ground.terrain().overlays();
-                let friction = overlays.friction().map(FrictionRaster::content);
-                let keep_out = overlays.keep_out().map(KeepOut::content);
-                write!(digest, "{:?}{:?}{friction:?}{keep_out:?}{:?}", ground.envelope(), ground.surface(), ground.terrain().dem())
+                let _ = limits_text(&mut digest, ground);
+                write!(digest, "{:?}", ground.terrain().dem())
             }
         };
         match &self.replanning {
-            Some(Replanning::Nodes { test, to_go, over: _ }) => {
+            Some(Replanning::Nodes { test, to_go }) => {
                 let _ = chain_text(&mut digest, test);
                 let _ = write!(digest, "{to_go:?}");
+            }
+            Some(Replanning::Corridor(corridor)) => {
+                let _ = write!(digest, "{corridor:?}");
             }
             Some(Replanning::PostCosts(to_go)) => {
                 let _ = write!(digest, "{to_go:?}");
@@ -91,22 +91,29 @@ impl Mission {
             }
             None => {}
         }
+        if let Some(ground) = &self.planned_over {
+            let _ = limits_text(&mut digest, ground);
+        }
         digest.0.finalize().iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
     }
 
     /// The same mission, whose trials may also be replanned over nodes of this chain.
     #[must_use]
     pub fn with_replanning(self, test: HopTest, to_go: Arc<CostToGo>) -> Self {
-        Self { replanning: Some(Replanning::Nodes { test: Box::new(test), to_go, over: None }), ..self }
+        Self { replanning: Some(Replanning::Nodes { test: Box::new(test), to_go }), ..self }
     }
 
-    /// The same mission, replanned over this ground of a DEM, whose limits planning may use; unchanged unless it is replanned over nodes.
+    /// The same mission over a DEM, replanned over this ground of it, whose limits planning may use. A mission along a chain has them in the
+    /// hop test that it is replanned by.
     #[must_use]
-    pub fn planned_over(mut self, ground: DemGround) -> Self {
-        if let Some(Replanning::Nodes { over, .. }) = &mut self.replanning {
-            *over = Some(Box::new(ground));
-        }
-        self
+    pub fn planned_over(self, ground: DemGround) -> Self {
+        Self { planned_over: Some(Arc::new(ground)), ..self }
+    }
+
+    /// The same mission over a DEM, whose trials may also be replanned over the nodes of a transect and the posts beside it.
+    #[must_use]
+    pub fn with_replanning_beside_the_line(self, corridor: Arc<Corridor>) -> Self {
+        Self { replanning: Some(Replanning::Corridor(corridor)), ..self }
     }
 
     /// The same mission over a DEM, whose trials may also be replanned over its posts, in any direction: the cheapest way. A mission along
@@ -131,6 +138,16 @@ impl fmt::Write for Sink {
         self.0.update(text.as_bytes());
         Ok(())
     }
+}
+
+/// All of a ground that its answers depend on, besides its elevations.
+fn limits_text(out: &mut Sink, ground: &DemGround) -> fmt::Result {
+    let overlays = ground.terrain().overlays();
+    let friction = overlays.friction().map(FrictionRaster::content);
+    let keep_out = overlays.keep_out().map(KeepOut::content);
+    write!(out, "{:?}{:?}{friction:?}{keep_out:?}", ground.envelope(), ground.surface())?;
+    let share = overlays.friction().map(FrictionRaster::share).filter(|share| *share != 1.0);
+    share.map_or(Ok(()), |share| write!(out, "{share:?}"))
 }
 
 /// All of a hop test that its answers depend on.

@@ -6,12 +6,12 @@ use std::{ops::RangeInclusive, sync::Arc};
 
 use nalgebra::Vector2;
 
-use super::replan::{HopReach, Replan, in_steps};
+use super::replan::{Replan, in_steps};
 use crate::{
-    ballistics::{self, LineOfSight, safety_range_m},
+    ballistics::{self, LineOfSight},
     flight::Command,
     graph::{Cost, MapJudge, PostCosts, PostRisks},
-    ground::{DemGround, MapPosition, NodeLattice, Post, Surface},
+    ground::{DemGround, HopReach, MapPosition, NodeLattice, Post, Surface},
     quantity::SlopeInterval,
     terrain::GeoReference,
 };
@@ -24,8 +24,6 @@ struct Posts {
     /// Their map.
     map: GeoReference,
     reach: HopReach,
-    /// The lowest elevation, m.
-    lowest_m: f64,
 }
 
 /// The line to a post that one hop may reach.
@@ -53,18 +51,12 @@ impl Posts {
     fn new(ground: &DemGround, lattice: NodeLattice) -> Self {
         let dem = ground.terrain().dem();
         let map = dem.georeference().every(lattice.stride);
-        let (lowest_m, _) = dem.elevation_range_m();
-        Self { reach: HopReach::of(ground), ground: ground.clone(), lattice, map, lowest_m }
+        Self { reach: HopReach::of(ground), ground: ground.clone(), lattice, map }
     }
 
     /// The posts that one hop from a position may reach, and some more.
-    ///
-    /// With C the length of the line of sight and Z its rise, `g (C + Z) <= v_t^2` and `g (C - Z) <= v_l^2` (see
-    /// [`LineOfSight::min_speed_ratio`]), so that `2 g C <= v_t^2 + v_l^2`; and no hop goes farther than one down to the lowest ground.
     fn window(&self, from: &MapPosition) -> Window {
-        let HopReach { takeoff_squared, landing_squared, gravity_m_s2 } = self.reach;
-        let down_m = safety_range_m((from.z_m - self.lowest_m).max(0.0), takeoff_squared.sqrt(), gravity_m_s2);
-        let run_m = down_m.min((takeoff_squared + landing_squared) / (2.0 * gravity_m_s2));
+        let run_m = self.reach.run_m(from);
         let Post { row, col } = self.lattice.nearest(self.ground.terrain().dem().georeference(), from.at);
         let about = |at: usize, step_m: f64, count: usize| {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; the cast saturates")]
@@ -112,7 +104,7 @@ impl CheapestPost {
     fn lines(&self, from: &MapPosition, window: &Window, hops: u16) -> Vec<(Cost, Line)> {
         let least = |line: &Line| {
             let rest = self.to_go.of_post(line.post)?;
-            Some(self.to_go.effort().least_cost(line.sight, self.posts.reach.gravity_m_s2) + rest)
+            Some(self.to_go.effort().least_cost(line.sight, self.posts.reach.gravity_m_s2()) + rest)
         };
         let of_hops = window.posts().filter(|post| self.to_go.hops_from(*post) == Some(hops));
         let mut lines: Vec<(Cost, Line)> = of_hops
@@ -130,7 +122,7 @@ impl CheapestPost {
         let Line { post, target, sight, heading } = line;
         let lofts = self.posts.lofts(from, line)?;
         let loft = self.posts.ground.envelope().loft(self.to_go.takeoff(), *sight, lofts);
-        let arc = ballistics::Arc::new(*sight, loft, self.posts.reach.gravity_m_s2);
+        let arc = ballistics::Arc::new(*sight, loft, self.posts.reach.gravity_m_s2());
         let cost = self.to_go.effort().cost(&arc, 1) + self.to_go.of_post(*post)?;
         if best.is_some_and(|best| cost >= best) {
             return None;
@@ -194,7 +186,7 @@ impl ReliablePost {
                 break;
             }
             let Some(lofts) = self.posts.lofts(from, &line) else { continue };
-            let total = rest + judge.estimate(self.posts.lattice.post(line.post), line.heading, (line.sight, lofts));
+            let total = rest + judge.estimate(&line.target, line.heading, (line.sight, lofts));
             best = best.min(total);
             hops.push((total, line, lofts));
         }

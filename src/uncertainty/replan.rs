@@ -2,17 +2,15 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector2;
-
 use crate::{
-    ballistics::{self, LineOfSight, TakeoffChoice},
+    ballistics::{self, TakeoffChoice},
     flight::Command,
-    graph::{Cost, CostToGo, Edge},
-    ground::{ChainGround, ChainPosition, DemGround, MapPosition, Surface, heading_of},
+    graph::{Corridor, Cost, CostToGo, Edge},
+    ground::{ChainGround, ChainPosition, DemGround, HopReach, MapPosition, Surface, heading_of},
     hop::HopTest,
     path::{SteppedGround, nearest_command},
     quantity::NodeId,
-    world::{Direction, SPEED_TOLERANCE, tolerant_speed_m_s},
+    world::Direction,
 };
 
 /// Chooses the next hop from a position of the nominal ground.
@@ -77,48 +75,6 @@ impl Replan<ChainPosition> for ChainReplan {
     }
 }
 
-/// How far one hop reaches: the parabolas of safety of the greatest speeds.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct HopReach {
-    /// The greatest take-off speed, squared, m^2/s^2.
-    pub(super) takeoff_squared: f64,
-    /// The greatest landing speed of an arc, squared, m^2/s^2; infinite with brakes.
-    pub(super) landing_squared: f64,
-    pub(super) gravity_m_s2: f64,
-}
-
-impl HopReach {
-    pub(super) fn of(ground: &DemGround) -> Self {
-        let limits = ground.hopper().limits();
-        let squared = |speed_m_s: f64| tolerant_speed_m_s(speed_m_s) * tolerant_speed_m_s(speed_m_s) * (1.0 + SPEED_TOLERANCE);
-        Self {
-            takeoff_squared: squared(limits.takeoff_speed_max_m_s),
-            landing_squared: squared(limits.arc_landing_speed_max_m_s()),
-            gravity_m_s2: ground.gravity_m_s2(),
-        }
-    }
-
-    /// The line of sight from one position to another, and its heading; `None` if no hop can span it, or if the two are one.
-    #[inline]
-    pub(super) fn sight(
-        &self,
-        ground: &DemGround,
-        from: &MapPosition,
-        target: &MapPosition,
-    ) -> Option<(LineOfSight, Vector2<f64>)> {
-        let away = target.at - from.at;
-        let run_m = away.norm();
-        if run_m <= ground.position_rounding_m() {
-            return None;
-        }
-        let sight = LineOfSight::new(run_m, target.z_m - from.z_m);
-        let g_x = self.gravity_m_s2 * run_m;
-        let too_far =
-            g_x * sight.min_speed_ratio() > self.takeoff_squared || g_x * sight.min_speed_ratio_reversed() > self.landing_squared;
-        (!too_far).then(|| (sight, away / run_m))
-    }
-}
-
 /// What kind of command of a hop is wanted.
 #[derive(Clone, Copy)]
 enum CommandKind {
@@ -131,13 +87,19 @@ enum CommandKind {
 /// Replanning over a DEM, by hops to the nodes of a transect.
 #[derive(Debug)]
 pub(super) struct MapReplan {
-    pub(super) ground: DemGround,
-    pub(super) to_go: Arc<CostToGo>,
+    ground: DemGround,
+    reach: HopReach,
+    to_go: Arc<CostToGo>,
     /// The map positions of the nodes of the costs-to-go.
-    pub(super) nodes: Vec<MapPosition>,
+    nodes: Vec<MapPosition>,
 }
 
 impl MapReplan {
+    /// `nodes`: the map positions of the nodes of the costs-to-go.
+    pub(super) fn new(ground: DemGround, to_go: Arc<CostToGo>, nodes: Vec<MapPosition>) -> Self {
+        Self { reach: HopReach::of(&ground), ground, to_go, nodes }
+    }
+
     /// The best hop to any node.
     fn best(&self, from: &MapPosition, commands: CommandKind) -> Option<Command<MapPosition>> {
         let mut best: Option<(Command<MapPosition>, Cost)> = None;
@@ -163,11 +125,11 @@ impl MapReplan {
         best: Option<Cost>,
         commands: CommandKind,
     ) -> Option<(Command<MapPosition>, Cost)> {
-        let Self { ground, to_go, nodes } = self;
+        let Self { ground, reach, to_go, nodes } = self;
         let target = nodes[node];
         let rest = to_go.of_node(NodeId(node))?;
         let g = ground.gravity_m_s2();
-        let (sight, heading) = HopReach::of(ground).sight(ground, from, &target)?;
+        let (sight, heading) = reach.sight(ground, from, &target)?;
         if best.is_some_and(|best| to_go.least_cost(sight, g) + rest >= best) {
             return None;
         }
@@ -214,5 +176,25 @@ impl Replan<MapPosition> for MapReplan {
         // The best hop mostly has a command in steps; to look for one of every hop on the way to it would take many times as long.
         let nearest = in_steps(&self.ground, believed, &exact.aim, self.to_go.options().takeoff);
         nearest.or_else(|| self.best(believed, CommandKind::InSteps))
+    }
+}
+
+/// Replanning over a DEM, by hops to the nodes of a transect and the posts beside it.
+#[derive(Debug)]
+pub(super) struct CorridorReplan {
+    pub(super) corridor: Arc<Corridor>,
+}
+
+impl Replan<MapPosition> for CorridorReplan {
+    fn next(&self, believed: &MapPosition) -> Option<Command<MapPosition>> {
+        let ground = self.corridor.ground();
+        let is_continuous = ground.hopper().limits().steps.is_continuous();
+        self.corridor.next_command(believed, |judge, target, heading, hop| {
+            if is_continuous {
+                Some(judge.command((believed, target), heading, hop))
+            } else {
+                in_steps(ground, believed, target, judge.takeoff())
+            }
+        })
     }
 }

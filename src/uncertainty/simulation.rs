@@ -9,7 +9,7 @@ use super::{
     Mission, MissionPoint, Observer, Policy, SimulationError, Summary, Trajectory, TrialOptions,
     mission::{MissionGround, Replanning},
     post_replan::{CheapestPost, ReliablePost},
-    replan::{ChainReplan, MapReplan, Replan},
+    replan::{ChainReplan, CorridorReplan, MapReplan, Replan},
     tally::{Flights, PlannedPlaces, Statistics, Tally},
     trial::{Flown, Plan, PlannedHop, Rules, Tank, fly},
 };
@@ -344,10 +344,10 @@ fn chain_plan(mission: &Mission) -> Result<Plan<ChainPosition>, SimulationError>
     });
     let hops = planned.collect::<Result<_, SimulationError>>()?;
     let replan = match &mission.replanning {
-        Some(Replanning::Nodes { test, to_go, .. }) => {
+        Some(Replanning::Nodes { test, to_go }) => {
             Some(Box::new(ChainReplan { test: test.as_ref().clone(), to_go: Arc::clone(to_go) }) as _)
         }
-        Some(Replanning::PostCosts(_) | Replanning::PostRisks(_)) | None => None,
+        Some(Replanning::Corridor(_) | Replanning::PostCosts(_) | Replanning::PostRisks(_)) | None => None,
     };
     let goal = Point2::new(mission.goal.along_m, 0.0);
     Ok(Plan { start: position(&mission.start, MissionPoint::Start)?, goal, hops, replan })
@@ -374,16 +374,17 @@ fn map_plan(mission: &Mission, ground: &DemGround) -> Result<Plan<MapPosition>, 
         Ok(position)
     };
     let (start, goal) = (on_ground(&mission.start, MissionPoint::Start)?, on_ground(&mission.goal, MissionPoint::Goal)?);
+    let planning = mission.planned_over.as_deref().unwrap_or(ground);
     let replan: Option<Box<dyn Replan<MapPosition>>> = match &mission.replanning {
-        Some(Replanning::Nodes { test, to_go, over }) => {
+        Some(Replanning::Nodes { test, to_go }) => {
             let stations = to_go.nodes().stations().iter();
             let node = |station| on_ground(&test.chain().contact_point(station), MissionPoint::Node);
             let nodes = stations.map(node).collect::<Result<_, _>>()?;
-            let ground = over.as_deref().unwrap_or(ground).clone();
-            Some(Box::new(MapReplan { ground, to_go: Arc::clone(to_go), nodes }))
+            Some(Box::new(MapReplan::new(planning.clone(), Arc::clone(to_go), nodes)))
         }
-        Some(Replanning::PostCosts(to_go)) => Some(Box::new(CheapestPost::new(ground, to_go))),
-        Some(Replanning::PostRisks(to_go)) => Some(Box::new(ReliablePost::new(ground, to_go))),
+        Some(Replanning::Corridor(corridor)) => Some(Box::new(CorridorReplan { corridor: Arc::clone(corridor) })),
+        Some(Replanning::PostCosts(to_go)) => Some(Box::new(CheapestPost::new(planning, to_go))),
+        Some(Replanning::PostRisks(to_go)) => Some(Box::new(ReliablePost::new(planning, to_go))),
         None => None,
     };
     Ok(Plan { start, goal: goal.at, hops, replan })

@@ -456,3 +456,38 @@ fn paths_are_verified_and_simulated_the_same_for_any_number_of_threads() {
     }
     assert!(rates[2] >= rates[0] && rates[2] >= rates[1] && rates[2] > 0.95, "open loop, by costs, by risks: {rates:?}");
 }
+
+/// The success of a path is estimated by trials of their own, whatever the seed and number of the trials that are flown beside it.
+#[test]
+fn the_success_of_paths_over_a_map_is_estimated_beside_their_trials() {
+    let desk = walled();
+    let errors =
+        "[uncertainty]\ntakeoff_speed_sigma_fraction = 0.02\nheading_sigma_deg = 0.5\ngoal_tolerance_m = 0.6\ntrials = 2000\n";
+    desk.write("errors.toml", desk.read("hopper.toml").replace("= 0.6", "= 1.2") + errors);
+    let map = ["map", "walled.asc", "--start", "102,205", "--goal", "108,206", "--goal", "114,205", "--scenario", "errors.toml"];
+    for (policy, risk) in [("open-loop", "ignored"), ("replan", "ignored"), ("replan", "traded")] {
+        let [of_policy, of_risk] = [format!("uncertainty.policy={policy}"), format!("search.risk={risk}")];
+        let flown = [&map[..], &["--simulate", "--set", &of_policy, "--set", &of_risk]].concat();
+        let [found, other] = [&[][..], &["--set", "uncertainty.seed=77", "--set", "uncertainty.trials=40"]].map(|more| {
+            let document = desk.json(&[&flown[..], more].concat());
+            assert_eq!(document["goals"][1]["totals"], Value::Null);
+            document["goals"][0].clone()
+        });
+        assert_eq!((&found["totals"]["success_policy"], &found["totals"]), (&policy.into(), &other["totals"]), "{policy}, {risk}");
+        let [estimated, rate] =
+            [&found["totals"]["success_estimated"], &found["simulation"]["success_rate"]].map(|share| share.as_f64().unwrap());
+        assert_eq!((512.0 * estimated).fract(), 0.0, "{estimated} of 512 trials");
+        // Four standard deviations of the difference of a rate of 512 trials and one of 2 000, at most.
+        assert!((estimated - rate).abs() < 4.0 * (0.25 * (1.0 / 512.0 + 1.0 / 2000.0_f64)).sqrt(), "{estimated}, {rate}");
+        let text = desk.run(&flown).stdout;
+        let line =
+            format!("goal (108.000, 206.000) m\nestimated success: {estimated:.4} under {policy}, by 512 fixed trials\n{policy}: ");
+        assert!(text.contains(&line), "{text}");
+    }
+    // Neither without trials nor without errors.
+    let exact = [&map[..6], &["--scenario", "hopper.toml", "--simulate"]].concat();
+    for words in [&map[..], &exact] {
+        let totals = desk.json(words)["goals"][0]["totals"].clone();
+        assert_eq!(totals.get("success_estimated"), None, "{words:?}");
+    }
+}

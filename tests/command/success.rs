@@ -265,19 +265,22 @@ fn an_answer_for_derated_limits_says_so() {
     let desk = desk();
     let wall = ["--set", "hopper.takeoff_speed_max_m_s=3", "--set", "derating.takeoff_speed=0.5"];
     let words = "planned with derated limits ([derating]: 0.5 of the take-off speed)";
-    let rows: [(&[&str], &str); 5] = [
+    let map = ["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"];
+    let fan = ["fan", "ground.tif", "--from", "5,5", "--length", "9", "--scenario", "map.toml"];
+    let rows: [(&[&str], &str); 8] = [
         (&["check", "scenario.toml", "--prove", "--prove-cells-max", "200"], "the proof is for the derated limits"),
         (&["plan", "scenario.toml"], words),
         (&["check", "scenario.toml"], words),
         (&["require", "scenario.toml", "--vary", "surface.friction_coefficient", "--resolution", "0.2"], words),
         (&["hop", "scenario.toml", "--to", "5"], words),
+        (&["trade", "scenario.toml", "--vary", "surface.friction_coefficient=0.5:0.7:2"], words),
+        (&map, words),
+        (&fan, words),
     ];
     for (command, part) in rows {
         let ran = desk.run(&[command, &wall].concat());
         assert!(ran.status < 2 && (ran.stdout + &ran.stderr).contains(part), "{command:?}: {part}");
     }
-    let map = ["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--set", "derating.friction=0.5"];
-    assert!(desk.run(&map).stderr.contains("derating.friction is not kept by this answer of chta map"));
 }
 
 /// A hop of 13.8 m needs 7.16 m/s at least, near nine tenths of 8 m/s. Planned under that share it never breaks the whole limit; under a
@@ -306,5 +309,93 @@ fn trials_fly_the_whole_limits() {
         let limited = flown(&["hopper.landing_speed_max_m_s=7.2"], policy);
         assert_eq!(derated, (1.0, 1.0), "{policy}");
         assert!(limited.0 < 0.8 && limited.1 < 0.8, "{policy}: {limited:?}");
+    }
+}
+
+/// A friction raster over the raster of the desk, coarser than it, with these coefficients.
+fn friction_raster(coefficients: [f64; 4]) -> String {
+    let [a, b, c, d] = coefficients;
+    format!("ncols 2\nnrows 2\nxllcorner -10\nyllcorner -10\ncellsize 20\n{a} {b}\n{c} {d}\n")
+}
+
+/// The same for maps, whose rasters are equal to the byte: hops, effort, return paths, mobility and the path to a goal.
+#[test]
+fn a_derated_map_is_that_of_smaller_limits() {
+    let desk = desk();
+    let coefficients = [0.9, 1.2, 0.7, 1.1];
+    desk.write("whole.asc", friction_raster(coefficients));
+    desk.write("half.asc", friction_raster(coefficients.map(|coefficient| 0.5 * coefficient)));
+    let map = ["map", "ground.tif", "--start", "5,5", "--goal", "15,12", "--scenario", "map.toml", "--effort", "--return"];
+    let files = ["-o", "hops.tif", "--effort-output", "effort.tif", "--mobility", "mobility.tif"];
+    let speeds = ["hopper.takeoff_speed_max_m_s=4", "hopper.landing_speed_max_m_s=4"];
+    let shares = ["derating.takeoff_speed=0.75", "derating.landing_speed=0.875", "derating.friction=0.5"];
+    let smaller = ["hopper.takeoff_speed_max_m_s=3", "hopper.landing_speed_max_m_s=3.5"];
+    let levels = ["hopper.takeoff_speed_levels_m_s=[2,3,4]", "hopper.takeoff_speed_levels_m_s=[2,3]"];
+    let cases: [(&[&str], &[&str]); 4] = [
+        (&["surface.friction_coefficient=1.5"], &["surface.friction_coefficient=0.75"]),
+        (
+            &["surface.friction_coefficient=1.5", "surface.friction_raster=\"whole.asc\""],
+            &["surface.friction_coefficient=0.75", "surface.friction_raster=\"half.asc\""],
+        ),
+        (
+            &["surface.friction_coefficient=1.5", "hopper.footprint_m=1.5"],
+            &["surface.friction_coefficient=0.75", "hopper.footprint_m=1.5"],
+        ),
+        (&["surface.friction_coefficient=1.5", levels[0]], &["surface.friction_coefficient=0.75", levels[1]]),
+    ];
+    for (whole, small) in cases {
+        let answer = |settings: &[&[&str]]| {
+            let settings: Vec<&str> = settings.concat().into_iter().flat_map(|setting| ["--set", setting]).collect();
+            let document = desk.json(&[&map[..], &files, &settings].concat());
+            let rasters = ["hops.tif", "effort.tif", "mobility.tif"].map(|file| std::fs::read(desk.path().join(file)).unwrap());
+            (document, rasters)
+        };
+        let (mut derated, of_derated) = answer(&[&speeds, whole, &shares]);
+        let (mut scaled, of_scaled) = answer(&[&smaller, small]);
+        let (undiminished, of_whole) = answer(&[&speeds, whole]);
+        assert_eq!(derated["derating"]["landing_speed"], 0.875, "{whole:?}");
+        assert_eq!(undiminished["derating"], Value::Null);
+        assert!(of_derated == of_scaled, "{whole:?}: the rasters differ");
+        assert!(of_derated.iter().zip(&of_whole).all(|(a, b)| a != b), "{whole:?}: the shares change nothing here");
+        for document in [&mut derated, &mut scaled] {
+            for key in ["derating", "scenario", "inputs", "warnings"] {
+                document.as_object_mut().unwrap().remove(key);
+            }
+        }
+        assert_eq!(derated, scaled, "{whole:?}");
+        let of_one = ["derating.takeoff_speed=1", "derating.landing_speed=1", "derating.friction=1"];
+        assert!(answer(&[&speeds, whole, &of_one]) == (undiminished, of_whole), "{whole:?}");
+    }
+}
+
+/// On a map as along a chain: a hop of 13.8 m to the goal, planned under nine tenths of the landing speed. A robot that replans by risk weighs
+/// it by the whole limits too: it takes the one hop, and two short ones where the limit itself is that low.
+#[test]
+fn trials_over_a_map_fly_the_whole_limits() {
+    let desk = desk();
+    let level = format!("ncols 21\nnrows 21\nxllcorner -3.45\nyllcorner -3.45\ncellsize 6.9\n{}", "0 ".repeat(441));
+    desk.write("level.asc", level);
+    let flown = |limits: &[&str], policy: &str, risk: &str| {
+        let (policy, risk) = (format!("uncertainty.policy={policy}"), format!("search.risk={risk}"));
+        let common = [
+            "search.takeoff_angle=least-speed",
+            "uncertainty.takeoff_speed_sigma_fraction=0.01",
+            "uncertainty.goal_tolerance_m=3",
+            &policy,
+            &risk,
+            "hopper.takeoff_speed_max_m_s=20",
+        ];
+        let settings: Vec<&str> = common.iter().chain(limits).flat_map(|setting| ["--set", setting]).collect();
+        let map = ["map", "level.asc", "--start", "62.1,69", "--goal", "75.9,69", "--scenario", "level.toml", "--simulate"];
+        let goal = desk.json(&[&map[..], &["--set", "uncertainty.trials=500"], &settings].concat())["goals"][0].clone();
+        assert_eq!(goal["hops"], 1, "{goal}");
+        (number(&goal["simulation"]["success_rate"]), number(&goal["simulation"]["hops_flown"]) / 500.0)
+    };
+    for (policy, risk) in [("open-loop", "ignored"), ("replan", "ignored"), ("replan", "fewest-hops")] {
+        let derated = flown(&["hopper.landing_speed_max_m_s=8", "derating.landing_speed=0.9"], policy, risk);
+        let (rate, hops) = flown(&["hopper.landing_speed_max_m_s=7.2"], policy, risk);
+        assert_eq!(derated, (1.0, 1.0), "{policy}, {risk}");
+        let by_risk = risk != "ignored";
+        assert!(if by_risk { hops > 1.5 } else { rate < 0.8 }, "{policy}, {risk}: {rate}, {hops} hops");
     }
 }

@@ -10,10 +10,10 @@ use chta::{
     ground::{DemGround, Surface, Windows},
     path::HopPath,
     quantity::{Angle, MapPoint},
-    reach::map::{Post, PostHops, Search, costs_to_go, joined, path_hops, risks_to_go, search},
+    reach::map::{Post, PostHops, Search, costs_to_go, joined, path_hops, risks_flown_over, risks_to_go, search},
     terrain::{Dem, GeoReference, read_keep_out},
     uncertainty::{HopRecord, Mission, Observer, Policy, Simulation, Summary, TrialOptions, TrialOutcome, Uncertainty},
-    world::{Hopper, HopperLimits},
+    world::{Derating, Hopper, HopperLimits},
 };
 
 use crate::{
@@ -194,6 +194,41 @@ fn replanned_hops_keep_to_the_ground_and_out_of_zones() {
             assert!(reached >= at_least, "void {is_void}, {name}: {:?}", summary.outcomes);
             assert!(records.len() > path.hops.len());
         }
+    }
+}
+
+/// Under shares of the limits every hop is one that the hop test of these shares allows, whatever the trials fly.
+#[test]
+fn replanned_hops_keep_the_shares_of_the_limits() {
+    let (start, goal) = (Post { row: 3, col: 4 }, Post { row: 20, col: 3 });
+    let whole = walled(true);
+    let derating = Derating { takeoff_speed: 0.85, friction: 0.9, ..Derating::NONE };
+    let hopper = derating.hopper(whole.hopper()).unwrap();
+    let planning = DemGround::new(whole.terrain().clone(), &hopper, whole.gravity(), &derating.surface(whole.surface()));
+    let choice = TakeoffChoice::MostReliable;
+    for by_risk in [false, true] {
+        let breaking = |planned_under: &DemGround, over: Option<&DemGround>| {
+            let hops = PostHops::new(planned_under.clone(), 1).unwrap();
+            let path = path(&hops, start, goal, choice).unwrap();
+            let (first, last) = (path.hops.first().unwrap(), path.hops.last().unwrap());
+            let mission = Mission::over_dem(whole.clone(), path.clone(), first.takeoff, last.landing);
+            let mission = if by_risk {
+                let risks = risks_flown_over(&hops, &whole, goal, (&ERRORS, choice), &()).unwrap();
+                mission.with_reliable_replanning_over_posts(Arc::new(risks))
+            } else {
+                mission.with_replanning_over_posts(Arc::new(costs_to_go(&hops, goal, (Effort::default(), choice), &()).unwrap()))
+            };
+            let mission = if let Some(over) = over { mission.planned_over(over.clone()) } else { mission };
+            let (summary, records) = fly(&mission, ERRORS, REPLAN);
+            assert!(!by_risk || summary.outcomes.of(TrialOutcome::Reached) > 35, "{:?}", summary.outcomes);
+            let breaks = |hop: &&HopRecord| {
+                let [from, to] = [hop.takeoff_m, hop.planned_m].map(|at| planning.position(at.xy()).unwrap());
+                planning.windows(&from, &to).unwrap().lofts.is_empty()
+            };
+            records.iter().filter(breaks).count()
+        };
+        assert_eq!(breaking(&planning, Some(&planning)), 0, "by risk {by_risk}");
+        assert!(breaking(&whole, None) > 20, "by risk {by_risk}: the shares change nothing here");
     }
 }
 

@@ -14,5 +14,5 @@ pub use crate::ground::{MapError, NodeLattice, Post, PostHops, PostHopsSize, Pos
 pub use costs_to_go::costs_to_go;
 pub use mobility::{Mobility, SECTORS, mobility};
 pub use paths::{MapHop, joined, path_hops, verify};
-pub use risks_to_go::risks_to_go;
+pub use risks_to_go::{risks_flown_over, risks_to_go};
 pub use search::{HopMap, Journey, NO_GROUND, NOT_SEARCHED, Search, Source, UNREACHED, search};

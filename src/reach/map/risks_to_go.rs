@@ -9,6 +9,7 @@ use crate::{
     ballistics::TakeoffChoice,
     flight::Uncertainty,
     graph::{MapJudge, PostRisks},
+    ground::DemGround,
     progress::{Detail, Meter, PairCounter, Progress, Stage},
 };
 
@@ -29,13 +30,29 @@ use crate::{
 pub fn risks_to_go(
     hops: &PostHops,
     goal: Post,
+    criterion: (&Uncertainty, TakeoffChoice),
+    progress: &dyn Progress,
+) -> Result<PostRisks, MapError> {
+    risks_flown_over(hops, hops.ground(), goal, criterion, progress)
+}
+
+/// The same for hops that are planned under shares of the limits, and flown over a ground with the whole limits.
+///
+/// Of the closed form, the window of angles stays the one that planning may use.
+///
+/// # Errors
+/// [`MapError`].
+pub fn risks_flown_over(
+    hops: &PostHops,
+    flown: &DemGround,
+    goal: Post,
     (errors, takeoff): (&Uncertainty, TakeoffChoice),
     progress: &dyn Progress,
 ) -> Result<PostRisks, MapError> {
     let meter = Meter::new(progress, Stage::Reliability);
     meter.report(Detail::None)?;
     let lattice = hops.lattice();
-    let judge = MapJudge::new(hops.ground(), errors, takeoff);
+    let judge = MapJudge::new(flown, errors, takeoff).planned_within(hops.ground().envelope());
     // Of doubles that are not negative, the bits have the order of the values.
     let labels: Vec<AtomicU64> = (0..lattice.count()).map(|_| AtomicU64::new(f64::INFINITY.to_bits())).collect();
     labels[lattice.index(goal)].store(0, Ordering::Relaxed);
@@ -76,6 +93,7 @@ impl Relaxed<'_> {
         let lattice = self.hops.lattice();
         let label = |index: usize| f64::from_bits(self.labels[index].load(Ordering::Relaxed));
         let (to, own) = (lattice.node(index), label(index));
+        let Some(target) = self.hops.position(to) else { return Ok(()) };
         let within = self.hops.within_reach(lattice.block_of(to));
         for (number, offset) in self.hops.offsets()[..within].iter().enumerate() {
             let Some(from) = self.hops.takeoff(to, number) else { continue };
@@ -85,7 +103,7 @@ impl Relaxed<'_> {
             }
             counter.pair()?;
             let Some(lofts) = self.hops.lofts_where(from, offset, |_, _| true)? else { continue };
-            let total = own + self.judge.estimate(lattice.post(to), offset.heading, lofts);
+            let total = own + self.judge.estimate(&target, offset.heading, lofts);
             known.fetch_min(total.to_bits(), Ordering::Relaxed);
         }
         Ok(())
@@ -97,7 +115,6 @@ mod tests {
     use super::*;
     use crate::{
         draw::Draw,
-        ground::DemGround,
         quantity::{Angle, MapPoint},
         terrain::{Dem, GeoReference, OverlaidDem, Overlays},
         world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
@@ -133,7 +150,7 @@ mod tests {
                     for number in 0..hops.offset_count() {
                         let Some(to) = hops.landing(from, number) else { continue };
                         let Some(lofts) = hops.lofts(from, number).unwrap() else { continue };
-                        let weight = judge.estimate(lattice.post(to), hops.offsets()[number].heading, lofts);
+                        let weight = judge.estimate(&hops.position(to).unwrap(), hops.offsets()[number].heading, lofts);
                         assert!(weight >= MapJudge::EACH_HOP, "{weight}");
                         let label = &mut expected[lattice.index(from)];
                         *label = label.min(before[lattice.index(to)] + weight);

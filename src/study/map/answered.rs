@@ -7,10 +7,13 @@ use crate::{
     path::HopPath,
     progress::Progress,
     reach::map::{
-        HopMap, Journey, MapHop, Mobility, PostHops, Search, Source, costs_to_go, joined, mobility, path_hops, risks_to_go, search,
-        verify,
+        HopMap, Journey, MapHop, Mobility, PostHops, Search, Source, costs_to_go, joined, mobility, path_hops, risks_flown_over,
+        search, verify,
     },
-    report::{GoalRecord, HopRecord, MapAnswer, MapSummary, PropellantShortage, SimulationRecord, TotalsRecord},
+    report::{
+        DeratingRecord, GoalRecord, HopRecord, MapAnswer, MapSummary, PropellantShortage, SimulationRecord, SuccessEstimate,
+        TotalsRecord,
+    },
     scenario::UncertaintyKeys,
     study::{Extremes, TrialGround, constant_gravity_warnings, sense::unplanned_bounces},
     uncertainty::{Mission, Policy, Simulation},
@@ -52,6 +55,13 @@ struct Found {
     warnings: Vec<String>,
 }
 
+/// How reliably the path to a goal is flown.
+#[derive(Clone, Debug)]
+struct FlownPath {
+    trials: SimulationRecord,
+    estimate: Option<SuccessEstimate>,
+}
+
 impl PreparedMap {
     /// Answers the question that the map was prepared for.
     ///
@@ -78,6 +88,7 @@ impl PreparedMap {
             effort: question.effort.then_some(scenario.search.effort),
             hops_max: question.hops_max,
         });
+        answer.derating = DeratingRecord::of(&scenario.derating);
         let goals = self.goals.iter().zip(&paths).zip(trials);
         answer.goals =
             goals.map(|((goal, path), trials)| self.goal_record(goal, (&out, back.as_ref()), path.as_ref(), trials)).collect();
@@ -105,7 +116,7 @@ impl PreparedMap {
     /// Searches, and checks the path to every goal.
     fn found(&self, question: &MapQuestion<'_>, progress: &dyn Progress) -> Result<Found, MapStudyError> {
         let options = &question.scenario.search;
-        let hops = PostHops::new(self.ground.clone(), self.lattice.stride)?;
+        let hops = PostHops::new(self.planning.clone(), self.lattice.stride)?;
         let sources: Vec<Source> = self.starts.iter().map(|start| start.post.into()).collect();
         let effort = question.effort.then_some((options.effort, options.takeoff));
         let asked = |journey, effort| Search { journey, effort, hops_max: question.hops_max };
@@ -161,31 +172,41 @@ impl PreparedMap {
         TrialGround { friction_max: of_raster.or(constant), extent_m: (bounds.max - bounds.min).norm(), journey_m: None, hops }
     }
 
-    /// Flies the path to every reachable goal many times: a robot that replans goes to the goal of its path, whatever others are nearer.
+    /// Flies the path to every reachable goal many times, and in the fixed trials of an estimate if there are errors: a robot that replans goes to the goal of its path, whatever others are nearer.
     fn flown(
         &self,
         question: &MapQuestion<'_>,
         paths: &[Option<HopPath>],
         keys: &UncertaintyKeys,
         progress: &dyn Progress,
-    ) -> Result<Vec<Option<SimulationRecord>>, MapStudyError> {
+    ) -> Result<Vec<Option<FlownPath>>, MapStudyError> {
         let options = &question.scenario.search;
         let replans = keys.policy == Policy::Replan;
-        let hops = replans.then(|| PostHops::new(self.ground.clone(), self.lattice.stride)).transpose()?;
+        let hops = replans.then(|| PostHops::new(self.planning.clone(), self.lattice.stride)).transpose()?;
         let fly = |goal: &Spot, path: &HopPath| {
             let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
             let mut mission = Mission::over_dem(self.ground.clone(), path.clone(), first.takeoff, last.landing);
             if let Some(hops) = &hops {
                 mission = if question.weighs_risk(&keys.errors) {
-                    let risks = risks_to_go(hops, goal.post, (&keys.errors, options.takeoff), progress)?;
+                    let risks = risks_flown_over(hops, &self.ground, goal.post, (&keys.errors, options.takeoff), progress)?;
                     mission.with_reliable_replanning_over_posts(Arc::new(risks))
                 } else {
                     let criterion = (options.effort, options.takeoff);
                     mission.with_replanning_over_posts(Arc::new(costs_to_go(hops, goal.post, criterion, progress)?))
                 };
+                if !question.scenario.derating.is_none() {
+                    mission = mission.planned_over(self.planning.clone());
+                }
             }
-            let summary = Simulation::new(&mission, keys.errors.clone())?.run(&keys.options(), &mut (), progress)?;
-            Ok(Some(SimulationRecord::new(&summary, path.hops.len())))
+            let (simulation, options) = (Simulation::new(&mission, keys.errors.clone())?, keys.options());
+            let estimate = if keys.errors.is_none() {
+                None
+            } else {
+                let success_estimated = simulation.estimated_success(&options, progress)?;
+                Some(SuccessEstimate { success_estimated, success_policy: keys.policy })
+            };
+            let summary = simulation.run(&options, &mut (), progress)?;
+            Ok(Some(FlownPath { trials: SimulationRecord::new(&summary, path.hops.len()), estimate }))
         };
         let goals = self.goals.iter().zip(paths);
         goals.map(|(goal, path)| path.as_ref().map_or(Ok(None), |path| fly(goal, path))).collect()
@@ -197,9 +218,10 @@ impl PreparedMap {
         goal: &Spot,
         (out, back): (&HopMap, Option<&HopMap>),
         path: Option<&HopPath>,
-        simulation: Option<SimulationRecord>,
+        flown: Option<FlownPath>,
     ) -> GoalRecord {
         let node = self.lattice.index(goal.post);
+        let estimate = flown.as_ref().and_then(|flown| flown.estimate);
         let reached = |map: &HopMap| Some(map.hops[node]).filter(|&hops| hops >= 0);
         GoalRecord {
             x_m: goal.at.x,
@@ -210,11 +232,11 @@ impl PreparedMap {
             searched: out.searched(node),
             return_hops: back.map(reached),
             path: path.map(|path| HopRecord::rows(path, self.projection.as_ref().ok())).unwrap_or_default(),
-            totals: path.map(|path| TotalsRecord::from(&path.totals)),
+            totals: path.map(|path| TotalsRecord { estimate, ..TotalsRecord::from(&path.totals) }),
             propellant_shortage: path.and_then(|path| PropellantShortage::of(&path.totals)),
             // A path that fails the check has already ended the study with an error.
             verified: path.map(|_| true),
-            simulation,
+            simulation: flown.map(|flown| flown.trials),
         }
     }
 }

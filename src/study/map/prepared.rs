@@ -7,7 +7,7 @@ use crate::{
     quantity::MapPoint,
     reach::map::{NodeLattice, Post},
     scenario::Scenario,
-    study::{DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body, with_measured_errors},
+    study::{DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body, pipeline::planned_over, with_measured_errors},
     terrain::{Dem, GeoReference, MapProjection, NoProjection, check_map_scale},
     uncertainty::Uncertainty,
 };
@@ -30,8 +30,10 @@ pub struct Spot {
 /// The terrain of a map, with the posts of its starts and goals, before the search.
 #[derive(Clone, Debug)]
 pub struct PreparedMap {
-    /// The ground.
+    /// The ground, with the whole limits: trials fly them.
     pub ground: DemGround,
+    /// The same under the limits that planning may use.
+    pub planning: DemGround,
     /// The projection of its map, or why it has none.
     pub projection: Result<MapProjection, NoProjection>,
     /// The posts of the map.
@@ -83,9 +85,10 @@ impl PreparedMap {
         }
         warnings.extend(starts_of_no_post(&starts));
         let ground = overlays.ground(dem, scenario);
-        let memory = MapMemory::of(question, &ground)?;
+        let planning = planned_over(&ground, scenario);
+        let memory = MapMemory::of(question, &planning)?;
         memory.check(question.memory_max_bytes)?;
-        Ok(Self { ground, projection, lattice, starts, goals, warnings, memory })
+        Ok(Self { ground, planning, projection, lattice, starts, goals, warnings, memory })
     }
 
     /// The elevations.

@@ -1,14 +1,11 @@
 //! The ground and the policy of the trials of a plan.
 
-use std::sync::Arc;
-
 use super::SimulateError;
 use crate::{
-    graph::CostToGo,
     ground::DemGround,
     path::HopPath,
     progress::Progress,
-    study::{Planned, dem_ground::dem_ground, front::FlownJourney},
+    study::{Planned, dem_ground::dem_ground, front::FlownJourney, to_go::ToGo},
     uncertainty::{Policy, Simulation, Uncertainty},
 };
 
@@ -17,16 +14,22 @@ pub(in crate::study) struct Flyer<'a> {
     planned: &'a Planned,
     /// The whole raster with its overlays, for flights in three dimensions.
     ground: Option<DemGround>,
-    to_go: Option<Arc<CostToGo>>,
+    to_go: Option<ToGo>,
 }
 
 impl<'a> Flyer<'a> {
     /// Takes raster and replanning policy from the plan, as far as it has them.
     pub(in crate::study) fn new(planned: &'a Planned, policies: &[Policy], progress: &dyn Progress) -> Result<Self, SimulateError> {
         let mut flyer = Self { planned, ground: dem_ground(&planned.case)?, to_go: None };
-        if policies.contains(&Policy::Replan) {
-            flyer.to_go = Some(flyer.journey().costs_of_path(&planned.found, planned.to_go.as_ref(), progress)?);
-        }
+        let replans = policies.contains(&Policy::Replan);
+        flyer.to_go = match (&planned.to_go, &planned.path) {
+            (Some(known), _) if replans => Some(known.clone()),
+            (None, Some(path)) if replans => {
+                let options = planned.case.scenario.uncertainty.clone().unwrap_or_default().options();
+                flyer.journey().to_go_of(&planned.found, path, &options, progress)?
+            }
+            _ => None,
+        };
         Ok(flyer)
     }
 

@@ -50,9 +50,6 @@ pub enum SimulateError {
         /// The problem.
         problem: Box<TerrainError>,
     },
-    /// Its overlays.
-    #[error(transparent)]
-    Overlay(Box<TerrainError>),
     /// The nodes of the replanning policy.
     #[error(transparent)]
     Nodes(#[from] NodesError),

@@ -67,6 +67,11 @@ impl FrictionRaster {
         &self.raster
     }
 
+    /// The share of its coefficients that counts.
+    pub(crate) const fn share(&self) -> f64 {
+        self.share
+    }
+
     /// Calls `visit` with rectangles that together contain all borders between different coefficients, including the border of
     /// the raster.
     pub(crate) fn borders(&self, visit: &mut dyn FnMut(MapBounds)) {
