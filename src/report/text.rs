@@ -48,6 +48,10 @@ pub fn hop_text(answer: &HopAnswer) -> String {
         answer.line_of_sight_m,
         answer.line_of_sight_angle_deg
     ));
+    if let (Some(takeoff), Some(landing), Some(heading_deg)) = (answer.takeoff_m, answer.landing_m, answer.heading_deg) {
+        let point = |[x_m, y_m, z_m]: [f64; 3]| format!("({}, {}, {}) m", place(x_m), place(y_m), place(z_m));
+        sheet.line(format_args!("on the map from {} to {}, heading {heading_deg:.3} deg", point(takeoff), point(landing)));
+    }
     match (answer.takeoff_angle_min_deg, answer.takeoff_angle_max_deg) {
         (Some(min), Some(max)) if answer.windows.len() <= 1 => {
             sheet.line(format_args!("feasible: take-off angles {min:.6} to {max:.6} deg"));

@@ -19,6 +19,7 @@ mod escape;
 mod exit_status;
 mod footprint;
 mod gis;
+mod hop_on_map;
 #[cfg(unix)]
 mod interrupt;
 mod map_command;

@@ -21,8 +21,8 @@ pub(crate) use journeys::{
     CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
 };
 pub(crate) use maps::{FanArgs, MapArgs};
-pub(crate) use position::place;
-use position::{along_chain, lon_lat, map_point};
+pub(crate) use position::{Position, place};
+use position::{along_chain, lon_lat, map_point, position};
 pub(crate) use setup::{CompletionsArgs, ManArgs, SchemaArgs};
 pub(crate) use synth::SynthArgs;
 pub(crate) use terrains::SliceArgs;
