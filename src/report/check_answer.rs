@@ -28,6 +28,9 @@ pub struct CheckAnswer {
     pub verdict: ProofVerdict,
     /// The fewest hops over these nodes.
     pub hops: Option<u64>,
+    /// The fewest hops of any path, over whatever nodes, by the greatest speeds alone; null if the ground allows no hop any speed.
+    #[serde(default)]
+    pub hops_lower_bound: Option<u64>,
     /// The effort of that path, in the unit of the chosen effort.
     pub effort: Option<EffortRecord>,
     /// The greatest number of points inside one segment.
@@ -191,6 +194,7 @@ impl CheckAnswer {
             goal_x_m,
             verdict: verdict_of(answer),
             hops: answer.hops(),
+            hops_lower_bound: hops_lower_bound(test, start_x_m, goal_x_m),
             effort,
             points_per_segment: answer.points_per_segment,
             node_spacing_max_m: match answer.spacing {
@@ -275,6 +279,12 @@ impl CheckAnswer {
         let is_reliable = !matches!(self.success_budget, Some(SuccessBudgetRecord { met: false, .. }));
         self.hops.is_some() && self.propellant_shortage.is_none() && self.commands_refusal.is_none() && is_reliable
     }
+}
+
+/// The fewest hops of any path between two positions of a chain.
+fn hops_lower_bound(test: &HopTest, start_x_m: f64, goal_x_m: f64) -> Option<u64> {
+    let station = |x_m| test.chain().geometry().station(x_m).ok();
+    test.chain().hops_lower_bound(&station(start_x_m)?, &station(goal_x_m)?)
 }
 
 /// The verdict of a search alone. A search cannot prove that there is no path, so the verdict is never "untraversable".

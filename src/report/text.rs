@@ -334,6 +334,9 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         place(answer.start_x_m),
         place(answer.goal_x_m)
     ));
+    if let Some(lower) = answer.hops_lower_bound {
+        sheet.line(format_args!("{}", hops_bound(answer.hops, lower)));
+    }
     if let Some(shortage) = &answer.propellant_shortage {
         sheet.line(format_args!("not with its propellant: {}", shortage.sentence()));
     }
@@ -411,6 +414,14 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         }
     }
     sheet.0
+}
+
+/// What a count of hops over nodes is worth: it is at most that many, and no path takes fewer than the bound.
+pub(super) fn hops_bound(hops: Option<u64>, lower: u64) -> String {
+    match hops {
+        Some(hops) => format!("at most {hops} hop{} over these nodes; no path takes fewer than {lower}", plural(hops)),
+        None => format!("not reached over these nodes; no path takes fewer than {lower} hop{}", plural(lower)),
+    }
 }
 
 /// Counts by name, in descending order.
