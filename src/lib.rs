@@ -57,6 +57,7 @@
 //! ground       chains and DEMs under the same traits: raw facts, feasible windows between two contacts, first contact of an arc
 //! flight       one hop flown under drawn errors
 //! graph        nodes, hops as edges, the search
+//! planner      the search over a DEM in any direction: nodes finer than posts, the fewest hops towards a goal
 //! path         the hops to fly, and `execute`, which flies them again without those equations
 //! uncertainty  how reliably a path is flown: policies, trials, statistics
 //! reach        hop counts from one position of a map: along slices in all directions, and over all posts of a DEM
@@ -86,6 +87,7 @@ pub mod graph;
 pub mod ground;
 pub mod hop;
 pub mod path;
+pub mod planner;
 pub mod progress;
 pub mod quantity;
 pub mod reach;

@@ -6,7 +6,7 @@
 use std::{fs, path::Path};
 
 /// The layers of modules, from the top. The last two are the binary's own modules, below all of the library.
-const LADDER: [&str; 18] = [
+const LADDER: [&str; 19] = [
     "progress",
     "quantity",
     "world",
@@ -17,6 +17,7 @@ const LADDER: [&str; 18] = [
     "ground",
     "flight",
     "graph",
+    "planner",
     "path",
     "uncertainty",
     "reach",
