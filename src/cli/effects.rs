@@ -129,6 +129,7 @@ impl Purpose {
             {
                 true
             }
+            ("terrain", "route") => !matches!(self, Self::Hop | Self::Fan | Self::Map { .. }),
             ("terrain", name) => !(on_a_dem && gives_way_to_a_dem(name)),
             ("search", "points_per_segment" | "node_spacing_max_m") => !matches!(self, Self::Hop | Self::Map { .. }),
             ("search", "effort") => !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { effort: false, .. }),

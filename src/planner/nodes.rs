@@ -1,5 +1,7 @@
 //! The nodes of a search over a DEM: a lattice, and single places beside it.
 
+use std::collections::HashSet;
+
 use nalgebra::Vector2;
 
 use super::SurfaceLattice;
@@ -56,15 +58,24 @@ impl SurfaceNodes {
         lattice: SurfaceLattice,
         places: impl IntoIterator<Item = MapPoint>,
     ) -> Result<Self, TooManyNodes> {
-        let mut found: Vec<MapPosition> = Vec::new();
-        for at in places {
-            found.extend(ground.position(at).filter(|place| found.iter().all(|other| other.at != place.at)));
-        }
-        let nodes = lattice.count().saturating_add(found.len());
+        Self::check(&lattice, 0)?;
+        let mut known = HashSet::new();
+        let different = places.into_iter().filter(|at| known.insert((at.x.to_bits(), at.y.to_bits())));
+        let found: Vec<MapPosition> = different.filter_map(|at| ground.position(at)).collect();
+        Self::check(&lattice, found.len())?;
+        Ok(Self { lattice, places: found })
+    }
+
+    /// Checks the number of nodes of a lattice with so many places beside it.
+    ///
+    /// # Errors
+    /// [`TooManyNodes`].
+    pub const fn check(lattice: &SurfaceLattice, places: usize) -> Result<(), TooManyNodes> {
+        let nodes = lattice.count().saturating_add(places);
         if nodes > Self::MOST {
             return Err(TooManyNodes { nodes, nodes_per_post: lattice.nodes_per_post(), most: Self::MOST });
         }
-        Ok(Self { lattice, places: found })
+        Ok(())
     }
 
     /// How many there are.

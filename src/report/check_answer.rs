@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     derating_record::DeratingRecord, hop_answer::BindingRecord, limit_counts::LimitCounts, proof_record::ProofRecord,
-    propellant_record::PropellantShortage, success_record::SuccessBudgetRecord,
+    propellant_record::PropellantShortage, route_record::RouteRecord, success_record::SuccessBudgetRecord,
 };
 use crate::{
     graph::{
@@ -33,6 +33,9 @@ pub struct CheckAnswer {
     pub hops_lower_bound: Option<u64>,
     /// The effort of that path, in the unit of the chosen effort.
     pub effort: Option<EffortRecord>,
+    /// Of a free route: how it was searched.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub route: Option<RouteRecord>,
     /// The greatest number of points inside one segment.
     pub points_per_segment: u32,
     /// The greatest node spacing, if the search was given one.
@@ -196,6 +199,7 @@ impl CheckAnswer {
             hops: answer.hops(),
             hops_lower_bound: hops_lower_bound(test, start_x_m, goal_x_m),
             effort,
+            route: None,
             points_per_segment: answer.points_per_segment,
             node_spacing_max_m: match answer.spacing {
                 PointSpacing::AtMostM(spacing_m) => Some(spacing_m),

@@ -368,10 +368,18 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
             sheet.line(format_args!("the proof is about hops on the line, and this path flies beside it"));
         }
     }
-    sheet.line(format_args!(
-        "{} nodes (up to {} inside a segment) on a chain of {} vertices, pairs of them tested: {}",
-        answer.nodes, answer.points_per_segment, answer.vertices, answer.pairs_tested
-    ));
+    match &answer.route {
+        Some(route) => {
+            sheet.line(format_args!("{}", route.nodes(answer.nodes, answer.pairs_tested)));
+            if answer.hops.is_none() {
+                sheet.line(format_args!("{}", route.nearest()));
+            }
+        }
+        None => sheet.line(format_args!(
+            "{} nodes (up to {} inside a segment) on a chain of {} vertices, pairs of them tested: {}",
+            answer.nodes, answer.points_per_segment, answer.vertices, answer.pairs_tested
+        )),
+    }
     if !answer.refusals.is_empty() {
         sheet.line(format_args!("refused by {}", ranked(&answer.refusals)));
     }

@@ -70,6 +70,12 @@ pub enum CaseError {
     /// A terrain without a usable chain.
     #[error(transparent)]
     Prepare(#[from] PipelineError),
+    /// A question about a free route that only a transect answers.
+    #[error("{question} only along a transect, and terrain.route is \"free\": set terrain.route = \"transect\" for it")]
+    TransectOnly {
+        /// What is wanted, with its verb.
+        question: &'static str,
+    },
     /// A start or goal that is given nowhere.
     #[error("found no {name}, expected terrain.{name}_x_m, or for a dem or mesh terrain.{name}_m", name = which.name())]
     MissingEnd {
@@ -119,6 +125,11 @@ impl Case {
         let mut prepared = survey.prepare(&whole)?;
         prepared.warnings.extend(of_errors);
         Ok(Self { prepared, scenario, base: base.to_path_buf(), derated, commands, raster: Arc::default() })
+    }
+
+    /// The same chain for the question of another case, whose scenario it then states.
+    pub(super) fn asked_by(self, other: &Self) -> Self {
+        Self { scenario: other.scenario.clone(), raster: Arc::clone(&other.raster), ..self }
     }
 
     /// The same case for these commands: its chain is prepared again if they make a difference.

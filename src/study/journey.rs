@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    Case, CaseError, SimulateError,
+    Case, CaseError, FreeRouteError, SimulateError,
     dem_ground::dem_ground,
     front::{Estimated, FlownJourney},
 };
@@ -40,6 +40,9 @@ pub enum JourneyError {
     /// The search or the proof.
     #[error(transparent)]
     Search(#[from] SearchError),
+    /// A route over a DEM in any direction.
+    #[error(transparent)]
+    Free(#[from] FreeRouteError),
     /// The trials that estimate the success of paths.
     #[error(transparent)]
     Trials(#[from] Box<SimulateError>),

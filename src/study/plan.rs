@@ -6,7 +6,10 @@ use std::{
 };
 
 use super::{
-    Case, CaseError, Commands, Front, FrontWithoutErrors, JourneyError, Proof, SimulateError, dem_ground::dem_ground, front::front,
+    Case, CaseError, Commands, Front, FrontWithoutErrors, JourneyError, Proof, SimulateError,
+    dem_ground::dem_ground,
+    free_route::{FoundRoute, along_transect, found_route},
+    front::front,
     journey::Searched,
 };
 #[cfg(feature = "plot")]
@@ -19,7 +22,7 @@ use crate::{
     path::{Execution, HopPath, TooManyHops, Violation},
     progress::Progress,
     report::{HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, path_geojson, write_path_csv},
-    scenario::UncertaintyKeys,
+    scenario::{Route, UncertaintyKeys},
 };
 
 /// What is wanted beside the path.
@@ -118,6 +121,9 @@ pub struct Planned {
 /// # Errors
 /// [`PlanError`].
 pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Result<Planned, PlanError> {
+    if case.scenario.route == Route::Free {
+        return plan_free(case, options, progress);
+    }
     let case = case.with_commands(Commands::OfTheMachine)?;
     if options.front.is_some() && case.scenario.uncertainty.is_none() {
         return Err(FrontWithoutErrors.into());
@@ -155,6 +161,26 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
         front,
     };
     Ok(Planned { case, test, ends, found: searched.found, path, answer, warnings, to_go: searched.to_go })
+}
+
+/// The same in any direction over a DEM: the path is always flown again, over its unrolled chain and over the DEM.
+fn plan_free(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Result<Planned, PlanError> {
+    if options.proof.is_some() {
+        along_transect(&case.scenario, "bounds that hold at any resolution are proved")?;
+    }
+    if options.front.is_some() {
+        along_transect(&case.scenario, "a front of hops against reliability is found")?;
+    }
+    let FoundRoute { case, test, ends, found, check, path, warnings } = found_route(case, progress)?;
+    let answer = PlanAnswer {
+        check,
+        verified: path.is_some().then_some(true),
+        path: path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default(),
+        totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
+        reliable_paths: Vec::new(),
+        front: None,
+    };
+    Ok(Planned { case, test, ends, found, path, answer, warnings, to_go: None })
 }
 
 impl Planned {

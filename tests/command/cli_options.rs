@@ -1176,9 +1176,9 @@ fn a_position_with_too_many_numbers_is_refused_with_what_each_terrain_takes() {
         for (option, (text, count)) in options.iter().flat_map(|option| [("1,2", 2), ("-1,2,3", 3)].map(|of| (option, of))) {
             let ran = desk.run(&[&[command, "scenario.toml", option, text], more].concat());
             let sentence = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
-            // What stands after an option of `hop` may be a position on a map, until its terrain is known.
-            let numbers = match (command, count) {
-                ("hop", 3) => "one or two numbers in metres",
+            // Two numbers may be a position on a map, until the terrain is known.
+            let numbers = match count {
+                3 => "one or two numbers in metres",
                 _ => "one number in metres, X, such as 12.5",
             };
             let expected = format!(

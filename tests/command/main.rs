@@ -18,6 +18,7 @@ mod effects;
 mod escape;
 mod exit_status;
 mod footprint;
+mod free_route;
 mod gis;
 mod hop_on_map;
 #[cfg(unix)]

@@ -56,8 +56,7 @@ pub(crate) struct RunArgs {
 
 /// Test one hop: each limit separately, the limits that bound the feasible take-off angles, or the two that conflict
 #[derive(Debug, ClapArgs)]
-#[command(after_help = "Examples:\n  chta hop data/scenarios/paper_76m.toml --from 0 --to 20 --format json\n  \
-                        chta hop data/terrain/lunar_rille.tif --from 40,60 --to 52,66 --scenario data/scenarios/lunar_rille.toml")]
+#[command(after_help = "Example:\n  chta hop data/scenarios/paper_76m.toml --from 0 --to 20 --format json")]
 pub(crate) struct HopArgs {
     /// Chain (CSV), elevation raster, scenario (TOML) or result (JSON); -: standard input
     #[arg(value_name = "TERRAIN")]

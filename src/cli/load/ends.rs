@@ -23,14 +23,8 @@ impl EndOptions {
     }
 
     /// The ends of a path.
-    pub(crate) const fn of_path(start: Option<f64>, goal: Option<f64>) -> Self {
-        const fn along(x_m: Option<f64>) -> Option<Position> {
-            match x_m {
-                Some(x_m) => Some(Position::Along(x_m)),
-                None => None,
-            }
-        }
-        Self { names: Some(["--start", "--goal"]), at: [along(start), along(goal)] }
+    pub(crate) const fn of_path(start: Option<Position>, goal: Option<Position>) -> Self {
+        Self { names: Some(["--start", "--goal"]), at: [start, goal] }
     }
 
     /// Sets the keys that they stand for. A hop or path between positions on a map goes straight: it has the bends of no scenario.

@@ -520,8 +520,8 @@ pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure
 }
 
 /// The keys of a terrain that is sliced.
-const SLICED_TERRAIN: [&str; 9] =
-    ["dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m", "via_lonlat_deg"];
+const SLICED_TERRAIN: [&str; 10] =
+    ["route", "dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m", "via_lonlat_deg"];
 
 /// The keys of a terrain that is given as a chain.
 const CHAIN_TERRAIN: [&str; 3] = ["chain", "start_x_m", "goal_x_m"];
