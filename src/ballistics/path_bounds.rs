@@ -115,7 +115,7 @@ mod tests {
             let reach_m = takeoff.min(landing).powi(2) / gravity;
             let [mut east, mut north, mut up] = [0.0; 3];
             let (mut hops, mut speeds, mut energy, mut time) = (0, 0.0, 0.0, 0.0);
-            for _ in 0..1 + draw.below(12) {
+            for _ in 0..=draw.below(12) {
                 let sight = LineOfSight::along(reach_m * draw.log_uniform(0.2, 2.0), draw.uniform(-1.5, 1.5));
                 let lofts = limits::speeds(sight, takeoff, landing, gravity);
                 if lofts.is_empty() {

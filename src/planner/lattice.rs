@@ -138,7 +138,7 @@ impl SurfaceLattice {
         let column = i == k && i.is_multiple_of(self.n);
         let row = j == l && j.is_multiple_of(self.n);
         // South-east and back: both differences are equal, and the line meets a post.
-        let diagonal = k.wrapping_sub(i) == l.wrapping_sub(j) && (if i > j { i - j } else { j - i }).is_multiple_of(self.n);
+        let diagonal = k.wrapping_sub(i) == l.wrapping_sub(j) && i.abs_diff(j).is_multiple_of(self.n);
         column || row || diagonal
     }
 

@@ -57,7 +57,7 @@ pub(super) fn route(entries: &mut Entries, terrain: Option<&TerrainSource>) -> R
             );
         }
     }
-    if entries.value("search", "points_per_segment").is_some_and(|value| value.is_integer()) {
+    if entries.value("search", "points_per_segment").is_some_and(toml::Value::is_integer) {
         let message = "search.points_per_segment is for the segments of a slice, and terrain.route is \"free\"".to_owned();
         let help = "give node_spacing_max_m, or \"auto\", or remove it";
         entries.problem(("search", "points_per_segment"), ProblemKind::Conflict, message, help);

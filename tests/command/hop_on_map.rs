@@ -58,9 +58,9 @@ fn a_hop_on_a_map_is_the_hop_along_its_slice() {
             let heading_deg = (goal[0] - start[0]).atan2(goal[1] - start[1]).to_degrees().rem_euclid(360.0);
             assert!((found["heading_deg"].as_f64().unwrap() - heading_deg).abs() < 1e-9, "{from} to {to}");
             if found["feasible"] == true {
-                feasible += 1
+                feasible += 1;
             } else {
-                refused += 1
+                refused += 1;
             }
             assert_eq!(answer(found), answer(along), "{scenario}: {from} to {to}");
         }

@@ -136,7 +136,7 @@ fn compare(ground: &DemGround, n: u32, ends: [MapPoint; 2], (effort, takeoff): (
         assert!(apart <= 1e-6 * (1.0 + expected.1), "{what}, n = {n}, {effort:?}: {} against {}", route.cost.effort(), expected.1);
         assert_eq!(([places[0].at, places[places.len() - 1].at], places.len() as u64 - 1), (ends, expected.0), "{what}");
         // The amount of the path is that of its legs, each by its own slice.
-        let legs = places.windows(2).map(|pair| price(ground, &pair[0], &pair[1], effort, takeoff).expect("a hop"));
+        let legs = places.windows(2).map(|pair| price(ground, &pair[0], &pair[1], effort, takeoff).unwrap());
         let total = if effort == Effort::PeakSpeed { legs.fold(0.0, f64::max) } else { legs.sum() };
         assert!((total - expected.1).abs() <= 1e-6 * (1.0 + total), "{what}: {total} against {}", expected.1);
         let limits = ground.hopper().limits();
