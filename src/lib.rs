@@ -57,7 +57,7 @@
 //! ground       chains and DEMs under the same traits: raw facts, feasible windows between two contacts, first contact of an arc
 //! flight       one hop flown under drawn errors
 //! graph        nodes, hops as edges, the search
-//! planner      paths by any objective, within budgets
+//! planner      paths by any objective, within budgets, along a chain; over a DEM in any direction, over nodes finer than posts
 //! path         the hops to fly, and `execute`, which flies them again without those equations
 //! uncertainty  how reliably a path is flown: policies, trials, statistics
 //! reach        hop counts from one position of a map: along slices in all directions, and over all posts of a DEM

@@ -37,6 +37,7 @@ mod flight_envelope;
 mod greatest_reach;
 pub mod limits;
 mod line_of_sight;
+mod path_bounds;
 mod safety;
 
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
@@ -47,4 +48,5 @@ pub use delta_v::{STANDARD_GRAVITY_M_S2, delta_v_m_s, delta_v_of_m_s, delta_v_of
 pub use flight_envelope::{ContactLimits, FlightEnvelope};
 pub use greatest_reach::{landing_reach_m, takeoff_reach_m};
 pub use line_of_sight::LineOfSight;
+pub use path_bounds::PathBounds;
 pub use safety::{safety_ceiling_m, safety_range_m};

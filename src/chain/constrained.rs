@@ -7,6 +7,7 @@ use super::{
     SegmentGround, Station, rest_slope, touchdown::touchdown_rule,
 };
 use crate::{
+    ballistics::PathBounds,
     quantity::{Angle, SegmentId},
     terrain::{FootprintFit, Surroundings},
     world::{Contact, Direction, Gravity, Grip, Hopper, InvalidSurface, SurfaceProperties},
@@ -197,6 +198,14 @@ impl ConstrainedChain {
     /// The greatest take-off and landing speed that any segment allows, m/s.
     pub const fn speed_bounds_m_s(&self) -> (f64, f64) {
         self.speed_bounds_m_s
+    }
+
+    /// The fewest hops that any path between two of its stations takes, whatever nodes it has; `None` where no hop has the speeds that the
+    /// segments allow.
+    pub fn hops_lower_bound(&self, start: &Station, goal: &Station) -> Option<u64> {
+        let (takeoff_m_s, landing_m_s) = self.speed_bounds_m_s;
+        let (from, to) = (start.point, goal.point);
+        PathBounds::new(takeoff_m_s, landing_m_s, self.gravity.m_s2()).hops((to.x_m - from.x_m).abs(), to.z_m - from.z_m)
     }
 
     /// The constraints of the segment that rules a contact at a station; `None` beyond the chain's ends.

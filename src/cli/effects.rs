@@ -152,6 +152,7 @@ impl Purpose {
             {
                 true
             }
+            ("terrain", "route") => !matches!(self, Self::Hop | Self::Fan | Self::Map { .. }),
             ("terrain", name) => !(on_a_dem && gives_way_to_a_dem(name)),
             ("search", "points_per_segment" | "node_spacing_max_m") => !matches!(self, Self::Hop | Self::Map { .. }),
             ("search", "effort" | "takeoff_angle" | "split") if by_objective => true,

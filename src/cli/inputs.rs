@@ -80,6 +80,11 @@ impl Input {
         }
     }
 
+    /// Whether it is an elevation raster.
+    pub(crate) const fn is_raster(&self) -> bool {
+        matches!(self.kind, FileKind::Raster(_) | FileKind::ForeignRaster(_) | FileKind::Points(_) | FileKind::Picture(_))
+    }
+
     /// Whether it is a result, in JSON.
     pub(crate) fn is_result(&self) -> bool {
         matches!(self.kind, FileKind::Result | FileKind::Json) || (self.kind != FileKind::Scenario && self.has_extension("json"))
@@ -135,6 +140,11 @@ pub(crate) fn look_at_chain(chain: &Path, common: &CommonArgs) -> Result<(), Fai
     look_at(common.input_max_gib, &[(Some(chain), Role::Chain), (common.scenario.as_deref(), Role::ScenarioOption)])
 }
 
+/// The same for the terrain of one hop.
+pub(crate) fn look_at_hop(terrain: &Path, common: &CommonArgs) -> Result<(), Failure> {
+    look_at(common.input_max_gib, &[(Some(terrain), Role::HopTerrain), (common.scenario.as_deref(), Role::ScenarioOption)])
+}
+
 /// The same with a file of pairs.
 pub(crate) fn look_at_pairs(chain: &Path, common: &CommonArgs, pairs: Option<&Path>) -> Result<(), Failure> {
     let files = [(Some(chain), Role::Chain), (common.scenario.as_deref(), Role::ScenarioOption), (pairs, Role::Pairs)];
@@ -165,7 +175,8 @@ pub(crate) fn open(path: &Path, role: Role) -> Result<Input, Failure> {
     let kind = FileKind::of(path).map_err(read)?;
     check_kind(&kind, role, path)?;
     let length = fs::metadata(path).map_err(read)?.len();
-    let is_read_blindly = matches!(role, Role::Chain | Role::ChainKey | Role::Pairs | Role::Starts | Role::MeshKey);
+    let is_read_blindly =
+        matches!(role, Role::Chain | Role::HopTerrain | Role::ChainKey | Role::Pairs | Role::Starts | Role::MeshKey);
     if matches!(kind, FileKind::Text | FileKind::Binary) && is_read_blindly && length > LARGEST_UNKNOWN {
         let mut beginning = Vec::new();
         File::open(path).and_then(|file| file.take(24).read_to_end(&mut beginning)).map_err(read)?;
@@ -241,7 +252,7 @@ fn check_kind(kind: &FileKind, role: Role, path: &Path) -> Result<(), Failure> {
 
 /// What is wrong with a file of this kind in this position, and how to mend it.
 fn wrong_kind(kind: &FileKind, role: Role, path: &Path) -> Option<(String, String)> {
-    if *kind == FileKind::Empty && !matches!(role, Role::Chain | Role::ChainKey | Role::Pairs) {
+    if *kind == FileKind::Empty && !matches!(role, Role::Chain | Role::HopTerrain | Role::ChainKey | Role::Pairs) {
         let found = format!("the file is empty; expected {} as {}", role.expected(), role.name());
         return Some((found, "was it written, copied or piped to its end?".to_owned()));
     }

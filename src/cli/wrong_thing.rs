@@ -14,6 +14,8 @@ use super::inputs::is_stream;
 pub(crate) enum Role {
     /// CHAIN of the commands that analyse one: a chain, or a scenario or result that names it.
     Chain,
+    /// TERRAIN of `hop`.
+    HopTerrain,
     /// SCENARIO of `run` and `compare`.
     Scenario,
     /// `--scenario`.
@@ -60,6 +62,7 @@ impl Role {
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Chain => "CHAIN",
+            Self::HopTerrain => "TERRAIN",
             Self::Scenario => "SCENARIO",
             Self::ScenarioOption => "--scenario",
             Self::Dem => "DEM",
@@ -80,6 +83,9 @@ impl Role {
     pub(crate) const fn expected(self) -> &'static str {
         match self {
             Self::Chain => "a chain CSV, a scenario (TOML) or a result (JSON)",
+            Self::HopTerrain => {
+                "a chain CSV, an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid), a scenario (TOML) or a result (JSON)"
+            }
             Self::Scenario | Self::ScenarioOption => "a scenario (TOML) or a result (JSON)",
             Self::Dem | Self::DemKey => "an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid)",
             Self::Terrain => "an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid) or a mesh (OBJ, STL, PLY)",
@@ -111,6 +117,11 @@ impl Role {
         }
     }
 
+    /// Whether the position takes an elevation raster beside a chain.
+    pub(crate) const fn takes_rasters(self) -> bool {
+        matches!(self, Self::HopTerrain)
+    }
+
     /// Whether a file of this kind is what the position takes, or its reader says best what is wrong with it.
     pub(crate) fn takes(self, kind: &FileKind) -> bool {
         use FileKind as Kind;
@@ -125,6 +136,7 @@ impl Role {
         is_unknown
             || match self {
                 Self::Chain => *kind == Kind::ChainCsv || of_scenario,
+                Self::HopTerrain => *kind == Kind::ChainCsv || of_scenario || of_dem || of_points,
                 Self::Scenario | Self::ScenarioOption => of_scenario,
                 Self::Dem | Self::DemKey => of_dem || of_points,
                 Self::MapTarget => of_dem || of_points || of_scenario,
@@ -166,7 +178,7 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
         (FileKind::ForeignMesh(_), Role::Terrain | Role::MeshKey) => {
             "export it as OBJ, STL or PLY, z up, and give that file".to_owned()
         }
-        (FileKind::Picture(_), Role::Dem | Role::MapTarget | Role::DemKey | Role::Terrain) => {
+        (FileKind::Picture(_), Role::Dem | Role::HopTerrain | Role::MapTarget | Role::DemKey | Role::Terrain) => {
             "a picture holds colours or brightness: give the raster of elevations that it was drawn from".to_owned()
         }
         // The terrain keys of a scenario.
@@ -212,7 +224,7 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
         (FileKind::Raster(_) | FileKind::ForeignRaster(_), Role::Chain | Role::Pairs | Role::Scenario | Role::ScenarioOption) => {
             from_terrain("dem", &name, &toml)
         }
-        (FileKind::Mesh(..), Role::Chain | Role::Pairs | Role::Scenario | Role::ScenarioOption) => {
+        (FileKind::Mesh(..), Role::Chain | Role::HopTerrain | Role::Pairs | Role::Scenario | Role::ScenarioOption) => {
             from_terrain("mesh", &name, &toml)
         }
         (FileKind::Mesh(..), Role::Dem | Role::MapTarget) => {
@@ -226,7 +238,7 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
              --scenario SCENARIO`"
         ),
         (FileKind::ChainCsv, Role::Pairs) => format!("the chain comes first: `chta check {name} --pairs PAIRS.csv`"),
-        (FileKind::PairsCsv, Role::Chain) => format!("the chain comes first: `chta check CHAIN --pairs {name}`"),
+        (FileKind::PairsCsv, Role::Chain | Role::HopTerrain) => format!("the chain comes first: `chta check CHAIN --pairs {name}`"),
         (FileKind::PathCsv, _) => format!("a path is an answer: give {} that it was planned on", role.expected()),
         (FileKind::Scenario | FileKind::Result, Role::Dem | Role::Terrain) => {
             format!("give the terrain first, and the scenario with --scenario {name}")

@@ -135,7 +135,7 @@ pub struct Cost {
 
 impl Cost {
     /// More than the cost of any path.
-    pub(super) const UNREACHED: Self = Self { hops: u64::MAX, sum: f64::INFINITY, peak: f64::INFINITY };
+    pub(crate) const UNREACHED: Self = Self { hops: u64::MAX, sum: f64::INFINITY, peak: f64::INFINITY };
 
     /// A number of hops without effort: a lower bound on the cost of every path with this many hops.
     pub const fn of_hops(hops: u64) -> Self {

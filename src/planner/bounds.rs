@@ -1,23 +1,16 @@
 //! What no path to a place takes less of.
 
 use super::{Amount, Amounts};
-use crate::world::HopperLimits;
+use crate::{ballistics::PathBounds, world::HopperLimits};
 
-/// Lower bounds on the amounts of every path of hops over a straight line, from its length and its climb alone.
+/// Lower bounds on the amounts of every path of hops over a straight line, from its length and its climb alone: those of
+/// [`PathBounds`], with what preparations, settling and overheads add for every hop.
 ///
-/// ```text
-///     with X the horizontal distance, Z the climb, C = hypot(X, Z), and the greatest speeds v_t, v_l at the ends of an arc:
-///     hops >= max( g (C + Z) / v_t^2, g (C - Z) / v_l^2 )        sum of take-off speeds >= g (C + Z) / v_t
-///     energy of motion >= g (C + Z) / 2                           flight time >= 2 C / (v_t + v_l)
-/// ```
-///
-/// Each is exact for one hop, and no greater than the sum over two parts of the way: C obeys the triangle inequality, and Z adds up. So
-/// they are consistent bounds for a search towards a goal. A billionth is shaved for rounding and for the tolerance of speeds.
+/// They are consistent bounds for a search towards a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeastAmounts {
-    gravity_m_s2: f64,
-    takeoff_max_m_s: f64,
-    landing_max_m_s: f64,
+    /// `None` where nothing hops.
+    bounds: Option<PathBounds>,
     limits: HopperLimits,
 }
 
@@ -30,9 +23,10 @@ impl LeastAmounts {
     pub fn new(limits: &HopperLimits, gravity_m_s2: f64, speeds_m_s: (f64, f64), relief_m: f64) -> Self {
         let (takeoff_m_s, landing_m_s) = speeds_m_s;
         let fallen_m_s = (takeoff_m_s * takeoff_m_s + 2.0 * gravity_m_s2 * relief_m).sqrt();
-        // Limits of speeds hold to a billionth.
-        let [takeoff_max_m_s, landing_max_m_s] = [takeoff_m_s, landing_m_s.min(fallen_m_s)].map(|speed| speed * (1.0 + 1e-8));
-        Self { gravity_m_s2, takeoff_max_m_s, landing_max_m_s, limits: *limits }
+        // Sums of many hops round: speeds count with ten times the tolerance of their limits.
+        let [takeoff_m_s, landing_m_s] = [takeoff_m_s, landing_m_s.min(fallen_m_s)].map(|speed| speed * (1.0 + 1e-8));
+        let hops = takeoff_m_s > 0.0 && landing_m_s > 0.0;
+        Self { bounds: hops.then(|| PathBounds::new(takeoff_m_s, landing_m_s, gravity_m_s2)), limits: *limits }
     }
 
     /// The bounds for a way that is so long horizontally and climbs so far, m.
@@ -45,21 +39,16 @@ impl LeastAmounts {
     /// assert_eq!(least.of(Amount::Hops), 3.0);
     /// assert!((least.of(Amount::Energy) - 125.0).abs() < 1e-5);
     /// ```
+    #[expect(clippy::cast_precision_loss, reason = "a bound on hops may be less")]
     pub fn over(&self, run_m: f64, climb_m: f64) -> Amounts {
         const SHAVED: f64 = 1.0 - 1e-9;
-        let Self { gravity_m_s2: g, takeoff_max_m_s: takeoff, landing_max_m_s: landing, limits } = *self;
         let straight_m = libm::hypot(run_m, climb_m);
-        if straight_m == 0.0 {
-            return Amounts::NONE;
-        }
-        // The difference of two nearly equal lengths is computed without it.
-        let up_m = if climb_m >= 0.0 { straight_m + climb_m } else { run_m * (run_m / (straight_m - climb_m)) };
-        let down_m = if climb_m <= 0.0 { straight_m - climb_m } else { run_m * (run_m / (straight_m + climb_m)) };
-        let ratio = |above: f64, below: f64| if below.is_finite() && below > 0.0 { above / below } else { 0.0 };
-        let hops = (ratio(g * up_m, takeoff * takeoff).max(ratio(g * down_m, landing * landing)) * SHAVED).ceil();
-        let speeds_m_s = ratio(g * up_m, takeoff) * SHAVED;
-        let flight_s = ratio(2.0 * straight_m, takeoff + landing) * SHAVED;
-        let kinetic_j_kg = 0.5 * g * up_m * SHAVED;
+        let Some(bounds) = self.bounds.as_ref().filter(|_| straight_m > 0.0) else { return Amounts::NONE };
+        let limits = &self.limits;
+        let hops = bounds.hops(run_m, climb_m).map_or(0.0, |hops| hops as f64);
+        let speeds_m_s = bounds.takeoff_speeds_m_s(run_m, climb_m);
+        let flight_s = bounds.flight_time_s(run_m, climb_m);
+        let kinetic_j_kg = bounds.energy_j_kg(run_m, climb_m);
         let prepared_j_kg = limits.preparation_energy_j.zip(limits.mass_kg).map_or(0.0, |(energy_j, mass_kg)| energy_j / mass_kg);
         let waits_s = limits.preparation_time_s.unwrap_or(0.0) * hops + limits.settling_s().unwrap_or(0.0) * (hops - 1.0).max(0.0);
         Amounts::NONE

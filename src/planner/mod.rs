@@ -1,14 +1,27 @@
-//! Search for paths of legs by any objective, within budgets: over a chain, and over any ground that gives its nodes successors.
+//! The search for paths of legs: along a chain by any objective and within budgets, and over a DEM in any direction.
 //!
 //! [`search`] and [`front`] work on a [`LegGraph`]: nodes are numbers, edges are visited and never stored, and each edge offers its
-//! distinct commands. [`ChainLegs`] is the graph of a chain.
+//! distinct commands. [`ChainLegs`] is the graph of a chain. [`free_route`] finds the fewest hops over the nodes of a DEM:
+//!
+//! ```text
+//!   o . . . o . . . o      o  posts of the DEM          .  lattice of n nodes a post spacing (here 4)
+//!   . . . . . . . . .      S, G  start and goal, where they were asked for: never moved to a post
+//!   . S---*---*-*---*-G    *  nodes of the straight slice from S to G, its crossings with the DEM's lines among them
+//!   o . . . o . . . o
+//! ```
+//!
+//! The ground is the triangulated DEM whatever the lattice: nodes say where one may stand. Each edge is the hop that a slice between the
+//! two nodes and the hop test along it find ([`HopTest`](crate::hop::HopTest)).
 
 mod amount;
 mod bounds;
 mod budget;
 mod chain_legs;
+mod free_route;
 mod front;
 mod labels;
+mod lattice;
+mod nodes;
 mod objective;
 mod search;
 
@@ -18,7 +31,10 @@ pub use budget::{BudgetProblem, Budgets, OverBudget, TotalBudget};
 pub use chain_legs::{
     ChainLegs, ChainPath, ChainQuestion, ChainSearched, SearchedCommands, UnmetBudget, front_on_chain, search_on_chain,
 };
+pub use free_route::{FreeRoute, RouteError, RouteGoal, free_route};
 pub use front::front;
+pub use lattice::{NODES_PER_POST_MOST, NodesPerPost, SurfaceLattice};
+pub use nodes::{SurfaceNode, SurfaceNodes, TooManyNodes};
 pub use objective::{Objective, ObjectiveProblem};
 pub use search::{FoundPath, LabelCap, LegGraph, PathStep, SearchResult, Successor, search};
 

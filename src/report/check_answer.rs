@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     derating_record::DeratingRecord, hop_answer::BindingRecord, limit_counts::LimitCounts, objective_record::ObjectiveRecord,
-    proof_record::ProofRecord, propellant_record::PropellantShortage, success_record::SuccessBudgetRecord,
+    proof_record::ProofRecord, propellant_record::PropellantShortage, route_record::RouteRecord,
+    success_record::SuccessBudgetRecord,
 };
 use crate::{
     graph::{
@@ -28,8 +29,14 @@ pub struct CheckAnswer {
     pub verdict: ProofVerdict,
     /// The fewest hops over these nodes.
     pub hops: Option<u64>,
+    /// The fewest hops of any path, over whatever nodes, by the greatest speeds alone; null if the ground allows no hop any speed.
+    #[serde(default)]
+    pub hops_lower_bound: Option<u64>,
     /// The effort of that path, in the unit of the chosen effort.
     pub effort: Option<EffortRecord>,
+    /// Of a free route: how it was searched.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub route: Option<RouteRecord>,
     /// The greatest number of points inside one segment.
     pub points_per_segment: u32,
     /// The greatest node spacing, if the search was given one.
@@ -195,7 +202,9 @@ impl CheckAnswer {
             goal_x_m,
             verdict: verdict_of(answer),
             hops: answer.hops(),
+            hops_lower_bound: hops_lower_bound(test, start_x_m, goal_x_m),
             effort,
+            route: None,
             points_per_segment: answer.points_per_segment,
             node_spacing_max_m: match answer.spacing {
                 PointSpacing::AtMostM(spacing_m) => Some(spacing_m),
@@ -296,6 +305,12 @@ impl CheckAnswer {
             && is_reliable
             && self.objective.as_ref().is_none_or(ObjectiveRecord::is_met)
     }
+}
+
+/// The fewest hops of any path between two positions of a chain.
+fn hops_lower_bound(test: &HopTest, start_x_m: f64, goal_x_m: f64) -> Option<u64> {
+    let station = |x_m| test.chain().geometry().station(x_m).ok();
+    test.chain().hops_lower_bound(&station(start_x_m)?, &station(goal_x_m)?)
 }
 
 /// The verdict of a search alone. A search cannot prove that there is no path, so the verdict is never "untraversable".

@@ -7,7 +7,9 @@ use super::{hop_margins::HopMarginsRecord, path_record::unsigned_zero};
 use crate::{
     ballistics::{Arc, TakeoffChoice, delta_v_m_s},
     chain::Station,
+    ground::Surface,
     hop::{Binding, Conflict, HopMargins, HopTest, LimitInterval, ReachAlongSight, SetWindow, Shortfall, TakeoffSet},
+    path::heading_deg,
     quantity::{Angle, VertexId},
     world::{Direction, HopperLimits, Limit},
 };
@@ -19,6 +21,15 @@ pub struct HopAnswer {
     pub from_x_m: f64,
     /// The landing, m.
     pub to_x_m: f64,
+    /// On a map: the take-off, [easting, northing, height], m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub takeoff_m: Option<[f64; 3]>,
+    /// On a map: the landing, [easting, northing, height], m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub landing_m: Option<[f64; 3]>,
+    /// On a map: the heading, clockwise from grid north.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heading_deg: Option<f64>,
     /// Direction of travel.
     pub direction: Direction,
     /// Whether a single hop is feasible.
@@ -210,9 +221,15 @@ impl HopAnswer {
         let best = |choice| set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice, test.hopper().limits()));
         let window = set.arc(choice, test.gravity_m_s2()).and_then(|arc| set.window_of(arc.loft()));
         let angles = window.and_then(|window| set.angles_of(window.lofts));
+        let points = [takeoff, landing].map(|station| test.chain().contact_point(station));
+        let [takeoff_m, landing_m] = points.map(|point| point.map().map(|at| [at.x, at.y, point.point_m.z]));
+        let [from_map, to_map] = points.map(|point| point.map());
         Some(Self {
             from_x_m: takeoff.point.x_m,
             to_x_m: landing.point.x_m,
+            takeoff_m,
+            landing_m,
+            heading_deg: from_map.zip(to_map).map(|(from, to)| heading_deg(from, to)),
             direction: set.direction(),
             feasible: angles.is_some(),
             takeoff_angle_min_deg: angles.map(|a| a.min.degrees()),

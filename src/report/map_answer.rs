@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     DeratingRecord, HopRecord, PropellantShortage, SimulationRecord, TotalsRecord, propellant_record::stores_lines, stated::stated,
+    text::hops_bound,
 };
 use crate::{
     graph::{Effort, EffortUnit},
@@ -126,10 +127,13 @@ pub struct GoalRecord {
     pub y_m: f64,
     /// Its distance from the requested position.
     pub offset_m: f64,
-    /// The number of the start, from 1, that the path begins at; null: not reachable.
+    /// The number of the start, from 1, that the path begins at; null: not reached over these nodes.
     pub start: Option<usize>,
-    /// Fewest hops; null: not reachable.
+    /// Fewest hops over these nodes; null: not reached over them.
     pub hops: Option<i16>,
+    /// The fewest hops of any path from a start to this post, over whatever nodes, by the greatest speeds alone; null without elevation.
+    #[serde(default)]
+    pub hops_lower_bound: Option<u64>,
     /// False if the search ended at its bound of hops before the goal, so that it is not known whether it can be reached.
     pub searched: bool,
     /// Fewest hops back; absent if not requested, null: no path.
@@ -303,7 +307,7 @@ impl MapAnswer {
         for goal in &self.goals {
             let unreached = match self.hops_max {
                 Some(most) if !goal.searched => format!("not within {}, and not searched beyond", format_hops(most)),
-                _ => "not reachable over these posts".to_owned(),
+                _ => "not reached over these nodes".to_owned(),
             };
             let from = goal.start.filter(|_| self.starts.len() > 1).map_or(String::new(), |number| format!(" from start {number}"));
             let hops = goal.hops.map_or(unreached, |hops| format_hops(hops) + &from);
@@ -317,6 +321,9 @@ impl MapAnswer {
                 "goal ({:.3}, {:.3}) m, {:.3} m from the place asked for: {hops}{back}",
                 goal.x_m, goal.y_m, goal.offset_m
             );
+            if let Some(lower) = goal.hops_lower_bound.filter(|_| goal.hops.is_some() || goal.searched) {
+                let _ = writeln!(text, "  {}", hops_bound(goal.hops.map(i16::unsigned_abs).map(u64::from), lower));
+            }
             for line in goal.totals.iter().flat_map(stores_lines) {
                 let _ = writeln!(text, "  {line}");
             }

@@ -48,6 +48,10 @@ pub fn hop_text(answer: &HopAnswer) -> String {
         answer.line_of_sight_m,
         answer.line_of_sight_angle_deg
     ));
+    if let (Some(takeoff), Some(landing), Some(heading_deg)) = (answer.takeoff_m, answer.landing_m, answer.heading_deg) {
+        let point = |[x_m, y_m, z_m]: [f64; 3]| format!("({}, {}, {}) m", place(x_m), place(y_m), place(z_m));
+        sheet.line(format_args!("on the map from {} to {}, heading {heading_deg:.3} deg", point(takeoff), point(landing)));
+    }
     match (answer.takeoff_angle_min_deg, answer.takeoff_angle_max_deg) {
         (Some(min), Some(max)) if answer.windows.len() <= 1 => {
             sheet.line(format_args!("feasible: take-off angles {min:.6} to {max:.6} deg"));
@@ -370,6 +374,9 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         place(answer.start_x_m),
         place(answer.goal_x_m)
     ));
+    if let Some(lower) = answer.hops_lower_bound {
+        sheet.line(format_args!("{}", hops_bound(answer.hops, lower)));
+    }
     if let Some(shortage) = &answer.propellant_shortage {
         sheet.line(format_args!("not with its propellant: {}", shortage.sentence()));
     }
@@ -404,10 +411,18 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
             sheet.line(format_args!("the proof is about hops on the line, and this path flies beside it"));
         }
     }
-    sheet.line(format_args!(
-        "{} nodes (up to {} inside a segment) on a chain of {} vertices, pairs of them tested: {}",
-        answer.nodes, answer.points_per_segment, answer.vertices, answer.pairs_tested
-    ));
+    match &answer.route {
+        Some(route) => {
+            sheet.line(format_args!("{}", route.nodes(answer.nodes, answer.pairs_tested)));
+            if answer.hops.is_none() {
+                sheet.line(format_args!("{}", route.nearest()));
+            }
+        }
+        None => sheet.line(format_args!(
+            "{} nodes (up to {} inside a segment) on a chain of {} vertices, pairs of them tested: {}",
+            answer.nodes, answer.points_per_segment, answer.vertices, answer.pairs_tested
+        )),
+    }
     if !answer.refusals.is_empty() {
         sheet.line(format_args!("refused by {}", ranked(&answer.refusals)));
     }
@@ -450,6 +465,14 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         }
     }
     sheet.0
+}
+
+/// What a count of hops over nodes is worth: it is at most that many, and no path takes fewer than the bound.
+pub(super) fn hops_bound(hops: Option<u64>, lower: u64) -> String {
+    match hops {
+        Some(hops) => format!("at most {hops} hop{} over these nodes; no path takes fewer than {lower}", plural(hops)),
+        None => format!("not reached over these nodes; no path takes fewer than {lower} hop{}", plural(lower)),
+    }
 }
 
 /// Counts by name, in descending order.

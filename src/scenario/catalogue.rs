@@ -1,5 +1,6 @@
 //! Every key that a scenario may have, with its kind, unit and meaning: the one list behind the reader, the help and the hints.
 
+use super::Route;
 use crate::{
     ballistics::TakeoffChoice,
     graph::{Effort, ReliabilityUse},
@@ -155,10 +156,12 @@ const CHOICES: [&str; 4] =
 const RELIABILITY_USES: [&str; 3] = [ReliabilityUse::ALL[0].name(), ReliabilityUse::ALL[1].name(), ReliabilityUse::ALL[2].name()];
 const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const DISTRIBUTIONS: [&str; 2] = [Distribution::ALL[0].name(), Distribution::ALL[1].name()];
+const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
+
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 92] = [
+pub const CATALOGUE: [Key; 93] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -300,6 +303,12 @@ pub const CATALOGUE: [Key; 92] = [
         "instead: intermediate points as [[longitude, planetocentric latitude], ...], degrees",
     ),
     key("terrain", "via_m", Kind::MapPoints, "intermediate points, [[x, y], ...], m, where the slice bends; no hop spans a bend"),
+    key(
+        "terrain",
+        "route",
+        Kind::Word(&ROUTES),
+        "transect: the plane from start to goal; free: any way over the DEM; absent: transect",
+    ),
     key("terrain", "start_x_m", COORDINATE, "start along the chain, m"),
     key("terrain", "goal_x_m", COORDINATE, "goal along the chain, m"),
     key(

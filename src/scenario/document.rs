@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Budget, Scenario, TerrainSource, UncertaintyKeys};
+use super::{Budget, Route, Scenario, TerrainSource, UncertaintyKeys};
 use crate::{
     graph::{PointSpacing, ReliabilityUse},
     planner::SearchedCommands,
@@ -180,6 +180,7 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         ("accept_map_scale", scenario.accept_map_scale.then_some(true.into())),
         ("via_m", list(&metres)),
         ("via_lonlat_deg", list(&degrees)),
+        ("route", (scenario.route == Route::Free).then(|| scenario.route.name().into())),
         ("start_x_m", scenario.start_x_m.map(Value::from)),
         ("goal_x_m", scenario.goal_x_m.map(Value::from)),
     ])

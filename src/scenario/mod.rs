@@ -11,6 +11,7 @@ mod file_kind;
 mod problem;
 mod propulsion;
 mod read;
+mod route;
 mod schema;
 mod trials;
 
@@ -22,5 +23,6 @@ pub(crate) use entries::{fits, nearest_key};
 pub use file_kind::FileKind;
 pub use problem::{KeyPath, ProblemKind, ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, LackingKey, Scenario, TerrainSource};
+pub use route::Route;
 pub use schema::scenario_schema;
 pub use trials::UncertaintyKeys;

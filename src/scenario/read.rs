@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    Budget, Entries, Place, ProblemKind, ScenarioProblem, UncertaintyKeys,
+    Budget, Entries, Place, ProblemKind, Route, ScenarioProblem, UncertaintyKeys,
     propulsion::{self, landing},
 };
 use crate::{
@@ -109,6 +109,8 @@ pub struct Scenario {
     pub no_data: NoDataRule,
     /// Intermediate points on the map, where a slice bends.
     pub via: Vec<MapPlace>,
+    /// Whether the journey keeps to the plane from start to goal.
+    pub route: Route,
     /// Start along the chain, m, if the scenario gives it.
     pub start_x_m: Option<f64>,
     /// Goal along the chain, m, if the scenario gives it.
@@ -156,6 +158,7 @@ impl Scenario {
         let surface = surface(&mut entries);
         let terrain = terrain(&mut entries);
         let via = via(&mut entries, terrain.as_ref());
+        let route = super::route::route(&mut entries, terrain.as_ref());
         let [friction_raster, keep_out] = overlays(&mut entries, &surface, terrain.as_ref());
         let derating = super::derating::derating(&mut entries, &hopper, &surface);
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
@@ -184,6 +187,7 @@ impl Scenario {
             accept_map_scale: entries.flag("terrain", "accept_map_scale"),
             no_data: entries.no_data("terrain", "no_data"),
             via,
+            route,
             start_x_m: entries.number("terrain", "start_x_m"),
             goal_x_m: entries.number("terrain", "goal_x_m"),
             search,

@@ -73,6 +73,12 @@ pub enum CaseError {
     /// A terrain without a usable chain.
     #[error(transparent)]
     Prepare(#[from] PipelineError),
+    /// A question about a free route that only a transect answers.
+    #[error("{question} only along a transect, and terrain.route is \"free\": set terrain.route = \"transect\" for it")]
+    TransectOnly {
+        /// What is wanted, with its verb.
+        question: &'static str,
+    },
     /// A start or goal that is given nowhere.
     #[error("found no {name}, expected terrain.{name}_x_m, or for a dem or mesh terrain.{name}_m", name = which.name())]
     MissingEnd {
@@ -124,6 +130,11 @@ impl Case {
         prepared.warnings.extend(of_errors);
         let (sliced, ground) = (survey.sliced(), Arc::default());
         Ok(Self { prepared, scenario, base: base.to_path_buf(), derated, commands, sliced, ground })
+    }
+
+    /// The same chain for the question of another case, whose scenario it then states.
+    pub(super) fn asked_by(self, other: &Self) -> Self {
+        Self { scenario: other.scenario.clone(), sliced: other.sliced.clone(), ground: Arc::clone(&other.ground), ..self }
     }
 
     /// The same case for these commands: its chain is prepared again if they make a difference.

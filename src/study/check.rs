@@ -1,6 +1,10 @@
 //! Whether a path exists, for one pair of start and goal or for many.
 
-use super::{Case, CaseError, Commands, JourneyEnd, JourneyError, Proof, journey::Searched};
+use super::{
+    Case, CaseError, Commands, JourneyEnd, JourneyError, Proof,
+    free_route::{FoundRoute, along_transect, found_route},
+    journey::Searched,
+};
 #[cfg(feature = "plot")]
 use crate::figure::{Caption, FigureError, Picture, ProofFigure, draw_proof};
 use crate::{
@@ -9,6 +13,7 @@ use crate::{
     path::HopPath,
     progress::Progress,
     report::{CheckAnswer, PairsAnswer},
+    scenario::Route,
 };
 
 /// Why there is no answer. That there is no path is one.
@@ -71,7 +76,19 @@ pub struct CheckedPair {
 /// # Errors
 /// [`CheckError::Journey`].
 pub fn check(case: &Case, proof: Option<Proof>, progress: &dyn Progress) -> Result<Checked, CheckError> {
+    if case.scenario.route == Route::Free {
+        return check_free(case, proof, progress);
+    }
     checked(case, &[case.ends()?], proof, progress)
+}
+
+/// The same in any direction over a DEM.
+fn check_free(case: &Case, proof: Option<Proof>, progress: &dyn Progress) -> Result<Checked, CheckError> {
+    if proof.is_some() {
+        along_transect(&case.scenario, "bounds that hold at any resolution are proved")?;
+    }
+    let FoundRoute { case, ends, check, path, warnings, .. } = found_route(case, progress)?;
+    Ok(Checked { case, pairs: vec![CheckedPair { ends, answer: check, path, bounds: None }], warnings })
 }
 
 /// Checks many pairs of start and goal.
@@ -79,6 +96,7 @@ pub fn check(case: &Case, proof: Option<Proof>, progress: &dyn Progress) -> Resu
 /// # Errors
 /// [`CheckError`].
 pub fn check_pairs(case: &Case, pairs: &[StartGoal], proof: Option<Proof>, progress: &dyn Progress) -> Result<Checked, CheckError> {
+    along_transect(&case.scenario, "many pairs of start and goal are checked")?;
     checked(case, &stations(case, pairs)?, proof, progress)
 }
 

@@ -1,7 +1,7 @@
 //! The search for a journey, and the proof where one is requested: what check, plan, compare and require share.
 
 use super::{
-    Case, CaseError, SimulateError,
+    Case, CaseError, FreeRouteError, SimulateError,
     dem_ground::dem_ground,
     front::{Estimated, FlownJourney},
     objective::{ByObjective, by_objective},
@@ -40,6 +40,9 @@ pub enum JourneyError {
     /// The search or the proof.
     #[error(transparent)]
     Search(#[from] SearchError),
+    /// A route over a DEM in any direction.
+    #[error(transparent)]
+    Free(#[from] FreeRouteError),
     /// The trials that estimate the success of paths.
     #[error(transparent)]
     Trials(#[from] Box<SimulateError>),

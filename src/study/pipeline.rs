@@ -22,7 +22,7 @@ use crate::{
     hop::HopTest,
     path::{Execution, Hop, HopPath, PathError, execute, generate_over},
     quantity::MapPoint,
-    scenario::{Scenario, TerrainSource},
+    scenario::{Route, Scenario, TerrainSource},
     terrain::{
         self, CoordinateSystem, Dem, DemOptions, Ellipsoid, FrictionRaster, KeepOut, MapBounds, MapPlace, MapProjection,
         NoDataRule, OverlaidDem, OverlayEffect, Profile, Surroundings, TerrainError, check_scale, read_friction_raster,
@@ -256,7 +256,8 @@ impl Survey {
             Surveyed::Slice { legs, overlays, dem } => {
                 let around = dem.as_ref().map(|dem| dem.around(legs, &scenario.hopper)).transpose()?.flatten();
                 let (chain, without_effect) = overlays.laid(legs.clone(), friction(scenario))?;
-                warnings.extend(without_effect);
+                // A free route may leave the line of this slice.
+                warnings.extend(without_effect.into_iter().filter(|_| scenario.route == Route::Transect));
                 whole(chain, around)
             }
             Surveyed::Chain(chain) => (chain.clone(), None, (None, None)),

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use super::{
     Case, CaseError, Commands, Front, FrontProblem, JourneyError, Proof, SimulateError,
     dem_ground::dem_ground,
+    free_route::{FoundRoute, along_transect, found_route},
     front::{amount_front, front},
     journey::Searched,
     to_go::ToGo,
@@ -22,7 +23,7 @@ use crate::{
     path::{Execution, HopPath, TooManyHops, Violation},
     progress::Progress,
     report::{HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, path_geojson, write_path_csv},
-    scenario::UncertaintyKeys,
+    scenario::{Route, UncertaintyKeys},
 };
 
 /// What is wanted beside the path.
@@ -121,6 +122,9 @@ pub struct Planned {
 /// # Errors
 /// [`PlanError`].
 pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Result<Planned, PlanError> {
+    if case.scenario.route == Route::Free {
+        return plan_free(case, options, progress);
+    }
     let case = case.with_commands(Commands::OfTheMachine)?;
     if let Some(front) = options.front {
         front.check(&case.scenario)?;
@@ -171,6 +175,27 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
         front_search,
     };
     Ok(Planned { case, test, ends, found: searched.found, path, answer, warnings, to_go: searched.to_go })
+}
+
+/// The same in any direction over a DEM: the path is always flown again, over its unrolled chain and over the DEM.
+fn plan_free(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Result<Planned, PlanError> {
+    if options.proof.is_some() {
+        along_transect(&case.scenario, "bounds that hold at any resolution are proved")?;
+    }
+    if options.front.is_some() {
+        along_transect(&case.scenario, "a front of hops against another amount is found")?;
+    }
+    let FoundRoute { case, test, ends, found, check, path, warnings } = found_route(case, progress)?;
+    let answer = PlanAnswer {
+        check,
+        verified: path.is_some().then_some(true),
+        path: path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default(),
+        totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
+        reliable_paths: Vec::new(),
+        front: None,
+        front_search: None,
+    };
+    Ok(Planned { case, test, ends, found, path, answer, warnings, to_go: None })
 }
 
 impl Planned {

@@ -3,7 +3,7 @@
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use super::{Case, CaseError, Commands, Planned};
+use super::{Case, CaseError, Commands, Planned, free_route::along_transect};
 use crate::{
     chain::OffChain,
     graph::{Answer, Cost, Outcome, PointSpacing, RefusalCounts},
@@ -90,6 +90,7 @@ impl Planned {
     /// # Errors
     /// [`ReadBackError`].
     pub fn read_back(case: &Case, document: &Value, inputs: &[InputFile]) -> Result<Self, ReadBackError> {
+        along_transect(&case.scenario, "the path of a result is read back")?;
         let schema = document["schema"].as_str().unwrap_or("no schema");
         let has_path = DocumentKind::of_schema(schema).is_some_and(|kind| WITH_PATH.contains(&kind));
         if !has_path || document.get("path").is_none() {

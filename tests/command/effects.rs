@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 91] = [
+const TELLING: [(&str, &str); 92] = [
     ("body.name", "moon"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -59,6 +59,7 @@ const TELLING: [(&str, &str); 91] = [
     ("terrain.via_m", "[[3, 3]]"),
     ("terrain.via_lonlat_deg", "[[3, 3]]"),
     ("terrain.accept_map_scale", "true"),
+    ("terrain.route", "free"),
     ("terrain.start_x_m", "12"),
     ("terrain.goal_x_m", "28"),
     ("search.points_per_segment", "3"),

@@ -18,7 +18,9 @@ mod effects;
 mod escape;
 mod exit_status;
 mod footprint;
+mod free_route;
 mod gis;
+mod hop_on_map;
 #[cfg(unix)]
 mod interrupt;
 mod map_command;

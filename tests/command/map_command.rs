@@ -162,7 +162,7 @@ fn exit_status_is_1_where_a_goal_is_out_of_reach_and_2_with_a_sentence_for_bad_i
     assert_eq!(desk.run(&[&MAP[..], &["--goal", "127,205"]].concat()).status, 0);
     let ran = desk.run(&[&MAP[..], &["--goal", "127,205", "--goal", "114,205"]].concat());
     assert_eq!(ran.status, 1, "{ran:?}");
-    assert!(ran.stdout.contains("not reachable over these posts"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("not reached over these nodes"), "{}", ran.stdout);
     let start = |place: &'static str| ["map", "walled.asc", "--start", place, "--scenario", "hopper.toml"];
     desk.refused(&start("300,205"), &["walled.asc", "--start", "off the map", "x from 100"]);
     desk.refused(&start("127,200"), &["--start", "no elevation", "choose a start where"]);

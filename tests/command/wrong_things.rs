@@ -80,7 +80,7 @@ const THINGS: [(&str, &str); 20] = [
 /// A position: its name, a command line with `THING` in it, and the things that it takes or whose reader says best what is wrong.
 /// Nothing else is given, no gravity and no start: the file comes first.
 const POSITIONS: [(&str, &[&str], &[&str]); 14] = [
-    ("CHAIN", &["hop", "THING"], CHAINS),
+    ("TERRAIN", &["hop", "THING"], HOP_TERRAINS),
     ("CHAIN", &["check", "THING"], CHAINS),
     ("CHAIN", &["plan", "THING"], CHAINS),
     ("CHAIN", &["simulate", "THING"], CHAINS),
@@ -97,6 +97,8 @@ const POSITIONS: [(&str, &[&str], &[&str]); 14] = [
 ];
 
 const CHAINS: &[&str] = &["chain.csv", "scenario.toml", "result.json", "empty.tif"];
+const HOP_TERRAINS: &[&str] =
+    &["chain.csv", "scenario.toml", "result.json", "empty.tif", "ground.tif", "ground.asc", "ground.xyz", "label.lbl"];
 const SCENARIOS: &[&str] = &["scenario.toml", "result.json"];
 const RASTERS: &[&str] = &["ground.tif", "ground.asc", "ground.xyz", "label.lbl"];
 const MAPS: &[&str] = &["ground.tif", "ground.asc", "ground.xyz", "label.lbl", "scenario.toml", "result.json"];

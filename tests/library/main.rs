@@ -26,6 +26,7 @@ mod execute;
 mod fly;
 mod footprint;
 mod formats_table;
+mod free_route;
 #[cfg(feature = "gdal")]
 mod gdal_feature;
 mod graph;

@@ -78,7 +78,7 @@ fn compare_maps(world: &World, start: Post, stride: usize, journeys: &[Journey],
 }
 
 /// A window of a DEM, with some posts set to no-data.
-fn cut_out(dem: &Dem, first: Post, side: usize, holes: usize, draw: &mut Draw) -> Dem {
+pub(crate) fn cut_out(dem: &Dem, first: Post, side: usize, holes: usize, draw: &mut Draw) -> Dem {
     let posts = (0..side).flat_map(|row| (0..side).map(move |col| (first.row + row, first.col + col)));
     let mut heights: Vec<f64> = posts.map(|(row, col)| dem.elevation(row, col).unwrap_or(f64::NAN)).collect();
     for _ in 0..holes {

@@ -333,3 +333,30 @@ fn bounds_meet_on_chains_of_the_prototypes_kind() {
     }
     assert!(open.len() <= 1, "left open (number, lower, upper): {open:?}");
 }
+
+/// The bound by the speeds alone holds for every path that is found, and is never above the fewest hops where those are proved.
+#[test]
+fn the_bound_by_the_speeds_is_below_every_path_and_every_proof() {
+    let mut draw = Draw::seeded(1704);
+    let (mut paths, mut proved, mut tight) = (0, 0, 0);
+    for round in 0..400 {
+        let segments = 2 + draw.below(8);
+        let journey = if round % 2 == 0 { Journey::adversarial(&mut draw) } else { Journey::rough(&mut draw, segments) };
+        let lower = journey.test().chain().hops_lower_bound(&journey.start, &journey.goal);
+        for points in [0, 3] {
+            let Some(hops) = journey.fewest(points) else { continue };
+            let lower = lower.expect("a path has speeds");
+            assert!(lower <= hops, "{lower} by the speeds, {hops} found");
+            paths += 1;
+            tight += u32::from(lower == hops && hops > 1);
+        }
+        let found = journey.bounds(400);
+        if let (Some(proof), Some(upper)) = (found.lower, found.upper())
+            && proof == upper
+        {
+            assert!(lower.is_some_and(|lower| lower <= proof), "{lower:?} by the speeds, {proof} proved");
+            proved += 1;
+        }
+    }
+    assert!(paths > 200 && proved > 100 && tight > 20, "{paths} paths, {proved} proved, {tight} of as many hops as the bound");
+}

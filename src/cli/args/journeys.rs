@@ -11,7 +11,7 @@ use clap::Args as ClapArgs;
 
 use super::{
     super::{Failure, load::OwnKey},
-    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, along_chain, cell_count, max_gib,
+    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, Position, ProveArgs, SearchArgs, cell_count, max_gib, position,
     success_share, trial_number,
 };
 
@@ -58,15 +58,15 @@ pub(crate) struct RunArgs {
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta hop data/scenarios/paper_76m.toml --from 0 --to 20 --format json")]
 pub(crate) struct HopArgs {
-    /// Chain (CSV), scenario (TOML) or result (JSON); -: standard input
-    #[arg(value_name = "CHAIN")]
-    pub(crate) chain: PathBuf,
-    /// Where the hop takes off, along the chain, m [default: the scenario's start]
-    #[arg(long, value_name = "X", value_parser = along_chain, allow_hyphen_values = true)]
-    pub(crate) from: Option<f64>,
-    /// Where it lands, along the chain, m [default: the scenario's goal]
-    #[arg(long, value_name = "X", value_parser = along_chain, allow_hyphen_values = true)]
-    pub(crate) to: Option<f64>,
+    /// Chain (CSV), elevation raster, scenario (TOML) or result (JSON); -: standard input
+    #[arg(value_name = "TERRAIN")]
+    pub(crate) terrain: PathBuf,
+    /// Where the hop takes off, m: X along a chain, X,Y on a map [default: the scenario's start]
+    #[arg(long, value_name = "X[,Y]", value_parser = position, allow_hyphen_values = true)]
+    pub(crate) from: Option<Position>,
+    /// Where it lands, m: X along a chain, X,Y on a map [default: the scenario's goal]
+    #[arg(long, value_name = "X[,Y]", value_parser = position, allow_hyphen_values = true)]
+    pub(crate) to: Option<Position>,
     #[command(flatten)]
     pub(crate) trajectory: TrajectoryArgs,
     /// How the answer is written to standard output

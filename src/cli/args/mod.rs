@@ -21,8 +21,8 @@ pub(crate) use journeys::{
     CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
 };
 pub(crate) use maps::{FanArgs, MapArgs};
-pub(crate) use position::place;
-use position::{along_chain, lon_lat, map_point};
+pub(crate) use position::{Position, place};
+use position::{lon_lat, map_point, position};
 pub(crate) use setup::{CompletionsArgs, ManArgs, SchemaArgs};
 pub(crate) use synth::SynthArgs;
 pub(crate) use terrains::SliceArgs;
@@ -151,12 +151,12 @@ pub(crate) struct JourneyArgs {
     /// Chain (CSV), scenario (TOML) or result (JSON); -: standard input
     #[arg(value_name = "CHAIN")]
     pub(crate) chain: PathBuf,
-    /// Start along the chain, m [default: the scenario's]
-    #[arg(long, value_name = "X", value_parser = along_chain, allow_hyphen_values = true)]
-    pub(crate) start: Option<f64>,
-    /// Goal along the chain, m [default: the scenario's]
-    #[arg(long, value_name = "X", value_parser = along_chain, allow_hyphen_values = true)]
-    pub(crate) goal: Option<f64>,
+    /// Start, m: X along the chain, X,Y on the map of a scenario's dem or mesh [default: the scenario's]
+    #[arg(long, value_name = "X[,Y]", value_parser = position, allow_hyphen_values = true)]
+    pub(crate) start: Option<Position>,
+    /// Goal, m: X along the chain, X,Y on the map of a scenario's dem or mesh [default: the scenario's]
+    #[arg(long, value_name = "X[,Y]", value_parser = position, allow_hyphen_values = true)]
+    pub(crate) goal: Option<Position>,
 }
 
 /// How an answer is computed and written.

@@ -10,16 +10,59 @@ use crate::cli::Failure;
 /// What each terrain takes, for the end of the sentence about a wrong count.
 const COUNTS: &str = "a position is X along a chain, X,Y on a map and X,Y,Z on a mesh";
 
+/// A position in the form that it was given in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Position {
+    /// X along a chain, m.
+    Along(f64),
+    /// X,Y on a map, m.
+    OnMap(MapPoint),
+}
+
+/// What is expected where one number is.
+const ONE: &str = "one number in metres, X, such as 12.5";
+
+/// What is expected where two numbers are.
+const TWO: &str = "two finite numbers in metres, X,Y, such as 12.5,-30";
+
+impl Position {
+    /// The sentence where the terrain takes the other form.
+    pub(crate) fn misfit(self) -> String {
+        let expected = match self {
+            Self::Along(_) => TWO,
+            Self::OnMap(_) => ONE,
+        };
+        format!("{}, expected {expected}: {COUNTS}", self.found())
+    }
+
+    /// What was found, for a sentence.
+    pub(crate) fn found(self) -> String {
+        match self {
+            Self::Along(x_m) => format!("found `{x_m}` (1 number)"),
+            Self::OnMap(at) => format!("found `{},{}` (2 numbers)", at.x, at.y),
+        }
+    }
+}
+
+/// Reads `X` along a chain, or `X,Y` on a map.
+pub(super) fn position(text: &str) -> Result<Position, String> {
+    match text.split(',').count() {
+        1 => along_chain(text).map(Position::Along),
+        2 => map_point(text).map(Position::OnMap),
+        count => Err(format!("found `{text}` ({count} numbers), expected one or two numbers in metres: {COUNTS}")),
+    }
+}
+
 /// Reads `X`, a position along a chain.
 pub(super) fn along_chain(text: &str) -> Result<f64, String> {
     // Whether it is finite and on the chain is said with the chain's extent.
-    let [x_m] = numbers(text, "one number in metres, X, such as 12.5", |_| true)?;
+    let [x_m] = numbers(text, ONE, |_| true)?;
     Ok(x_m)
 }
 
 /// Reads `X,Y`, a position on a map.
 pub(super) fn map_point(text: &str) -> Result<MapPoint, String> {
-    let [x_m, y_m] = numbers(text, "two finite numbers in metres, X,Y, such as 12.5,-30", f64::is_finite)?;
+    let [x_m, y_m] = numbers(text, TWO, f64::is_finite)?;
     Ok(MapPoint::new(x_m, y_m))
 }
 
@@ -58,6 +101,21 @@ pub(crate) fn place(which: &str, point: Option<MapPoint>, place: Option<LonLat>)
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_position_has_one_number_or_two() {
+        assert_eq!(position("-3.5"), Ok(Position::Along(-3.5)));
+        assert_eq!(position("-3.5, 2"), Ok(Position::OnMap(MapPoint::new(-3.5, 2.0))));
+        for (text, said) in [
+            ("1,2,3", "(3 numbers), expected one or two numbers in metres: a position is X along a chain, X,Y on a map"),
+            ("a", "expected one number in metres, X"),
+            ("1,b", "expected two finite numbers in metres, X,Y"),
+            ("1,inf", "expected two finite numbers in metres, X,Y"),
+        ] {
+            let sentence = position(text).unwrap_err();
+            assert!(sentence.starts_with(&format!("found `{text}`")) && sentence.contains(said), "{sentence}");
+        }
+    }
 
     #[test]
     fn a_wrong_count_of_numbers_is_told_with_what_each_terrain_takes() {

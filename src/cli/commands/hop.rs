@@ -8,9 +8,8 @@ use chta::{
 use crate::cli::{
     Answer, Failure,
     args::HopArgs,
-    effects::Purpose,
     inputs,
-    load::{EndOptions, load},
+    load::{EndOptions, load_hop},
     output,
     trajectory::TrajectoryFile,
     views::{Files, show},
@@ -18,9 +17,9 @@ use crate::cli::{
 
 /// Tests one hop.
 pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
-    inputs::look_at_chain(&args.chain, &args.common)?;
+    inputs::look_at_hop(&args.terrain, &args.common)?;
     let ends = EndOptions::of_hop(args.from, args.to);
-    let loaded = load(&args.chain, &args.common, None, ends, Purpose::Hop, &[])?;
+    let loaded = load_hop(&args.terrain, &args.common, ends)?;
     loaded.ends()?;
     let hopped = hop(&loaded.case)?;
     if let Some(file) = TrajectoryFile::begin(&args.trajectory)? {

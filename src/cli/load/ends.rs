@@ -1,33 +1,98 @@
 //! The options for start and goal.
 
-use chta::study::JourneyEnd as End;
+use std::path::Path;
 
-use crate::cli::Failure;
+use chta::{scenario::Entries, study::JourneyEnd as End};
+
+use crate::cli::{Failure, args::Position};
 
 /// The options for start and goal. Commands name them differently; some have none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EndOptions {
     names: Option<[&'static str; 2]>,
-    pub(super) x_m: [Option<f64>; 2],
+    at: [Option<Position>; 2],
 }
 
 impl EndOptions {
     /// A command without such options.
-    pub(crate) const NONE: Self = Self { names: None, x_m: [None, None] };
+    pub(crate) const NONE: Self = Self { names: None, at: [None, None] };
 
     /// The ends of one hop.
-    pub(crate) const fn of_hop(from: Option<f64>, to: Option<f64>) -> Self {
-        Self { names: Some(["--from", "--to"]), x_m: [from, to] }
+    pub(crate) const fn of_hop(from: Option<Position>, to: Option<Position>) -> Self {
+        Self { names: Some(["--from", "--to"]), at: [from, to] }
     }
 
     /// The ends of a path.
-    pub(crate) const fn of_path(start: Option<f64>, goal: Option<f64>) -> Self {
-        Self { names: Some(["--start", "--goal"]), x_m: [start, goal] }
+    pub(crate) const fn of_path(start: Option<Position>, goal: Option<Position>) -> Self {
+        Self { names: Some(["--start", "--goal"]), at: [start, goal] }
+    }
+
+    /// Sets the keys that they stand for. A hop or path between positions on a map goes straight: it has the bends of no scenario.
+    pub(super) fn set(&self, entries: &mut Entries) {
+        let on_map = self.at.iter().any(|at| matches!(at, Some(Position::OnMap(_))));
+        if on_map {
+            for key in ["via_m", "via_lonlat_deg"] {
+                entries.forget("terrain", key);
+            }
+        }
+        for end in [End::Start, End::Goal] {
+            let (name, option) = (end.name(), self.place(end));
+            match self.at[end as usize] {
+                Some(Position::Along(x_m)) => {
+                    entries.set_by_option(&option, "terrain", &format!("{name}_x_m"), x_m.into());
+                }
+                Some(Position::OnMap(at)) => {
+                    entries.forget("terrain", &format!("{name}_lonlat_deg"));
+                    entries.set_by_option(&option, "terrain", &format!("{name}_m"), vec![at.x, at.y].into());
+                }
+                None => {}
+            }
+            if on_map {
+                entries.forget("terrain", &format!("{name}_x_m"));
+            }
+        }
+    }
+
+    /// Refuses positions with a number too many or too few for a terrain, and two of different forms.
+    ///
+    /// `on_raster`: the terrain is an elevation raster as it stands, which has positions on its map alone; `on_chain`: it is a chain, which has
+    /// positions along it alone. A scenario's transect has both.
+    pub(super) fn check_counts(&self, terrain: &Path, on_raster: bool, on_chain: bool) -> Result<(), Failure> {
+        let name = terrain.display();
+        for (end, at) in [End::Start, End::Goal].into_iter().zip(self.at) {
+            let option = self.place(end);
+            match at {
+                Some(at @ Position::Along(_)) if on_raster => {
+                    return Err(Failure::message(format!("{option}: {}; {name} is an elevation raster", at.misfit())));
+                }
+                Some(at @ Position::OnMap(_)) if on_chain => {
+                    return Err(Failure::message(format!("{option}: {}; {name} is a chain", at.misfit())));
+                }
+                None if on_raster => {
+                    let (end, option) = (end.name(), self.names.map_or("", |names| names[end as usize]));
+                    return Err(Failure::message(format!(
+                        "{name}: found no {end}, expected {option} X,Y: a position on its map, in metres"
+                    )));
+                }
+                _ => {}
+            }
+        }
+        match self.at {
+            [Some(first @ Position::Along(_)), Some(last @ Position::OnMap(_))]
+            | [Some(first @ Position::OnMap(_)), Some(last @ Position::Along(_))] => Err(Failure::message(format!(
+                "{}: {}, {}: {}; expected both in one form: X along the transect of {name}, or X,Y on its map",
+                self.place(End::Start),
+                first.found(),
+                self.place(End::Goal),
+                last.found()
+            ))),
+            _ => Ok(()),
+        }
     }
 
     /// The source of an end's value.
     pub(super) fn place(&self, end: End) -> String {
-        match (self.names, self.x_m[end as usize]) {
+        match (self.names, self.at[end as usize]) {
             (Some(names), Some(_)) => names[end as usize].to_owned(),
             _ => format!("terrain.{}_x_m", end.name()),
         }

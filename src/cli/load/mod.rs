@@ -18,8 +18,7 @@ use chta::{
         Entries, FileKind, LackingKey, Place, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, scenario_document,
     },
     study::{
-        self, Case, CaseError, CaseRecord, Commands, Compared, Comparison, JourneyEnd as End, Overlays, PipelineError, checksums,
-        scenario_files,
+        self, Case, CaseError, CaseRecord, Commands, Compared, Comparison, Overlays, PipelineError, checksums, scenario_files,
     },
     terrain::MapPlace,
 };
@@ -86,28 +85,49 @@ struct Source {
     base: PathBuf,
 }
 
-/// A file to analyse, and whether it is a scenario or a chain.
+/// What a file to analyse is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum TargetKind {
+    Scenario,
+    Chain,
+    Raster,
+}
+
+/// A file to analyse, and what it is.
 struct Target {
     input: Input,
-    is_scenario: bool,
+    kind: TargetKind,
 }
 
 impl Target {
     /// A chain, scenario or result.
     fn chain(path: &Path) -> Result<Self, Failure> {
-        let input = inputs::open(path, Role::Chain)?;
-        let is_scenario = input.is_scenario();
+        Self::of(path, Role::Chain)
+    }
+
+    /// The same, or an elevation raster where the role takes one.
+    fn of(path: &Path, role: Role) -> Result<Self, Failure> {
+        let input = inputs::open(path, role)?;
+        let kind = match input.is_scenario() {
+            true => TargetKind::Scenario,
+            false if role.takes_rasters() && input.is_raster() => TargetKind::Raster,
+            false => TargetKind::Chain,
+        };
         // What is not even a table is reported before the keys that its analysis would lack.
-        if !is_scenario && input.kind != FileKind::ChainCsv {
+        if kind == TargetKind::Chain && input.kind != FileKind::ChainCsv {
             read_chain_csv_file(&input.file)?;
         }
-        Ok(Self { input, is_scenario })
+        Ok(Self { input, kind })
+    }
+
+    fn is_scenario(&self) -> bool {
+        self.kind == TargetKind::Scenario
     }
 }
 
 /// Loads a scenario or result as it stands.
 pub(crate) fn load_scenario(target: &Path, common: &CommonArgs, purpose: Purpose) -> Result<Loaded, Failure> {
-    let target = Target { input: inputs::open(target, Role::Scenario)?, is_scenario: true };
+    let target = Target { input: inputs::open(target, Role::Scenario)?, kind: TargetKind::Scenario };
     let source = typed(&target, common, None, EndOptions::NONE)?;
     let given = source.entries.clone();
     validate_and_prepare(&target, source, common.quiet, (EndOptions::NONE, purpose, &given), &mut purpose.preparation())
@@ -136,24 +156,50 @@ pub(crate) fn load(
     purpose: Purpose,
     own: &[OwnKey<'_>],
 ) -> Result<Loaded, Failure> {
-    let target = Target::chain(target)?;
-    let mut source = typed(&target, common, search, ends)?;
+    loaded_from(&Target::chain(target)?, common, (search, ends), purpose, own)
+}
+
+/// Loads the terrain of one hop, or a scenario or result that has it, with the options beside it.
+pub(crate) fn load_hop(terrain: &Path, common: &CommonArgs, ends: EndOptions) -> Result<Loaded, Failure> {
+    loaded_from(&Target::of(terrain, Role::HopTerrain)?, common, (None, ends), Purpose::Hop, &[])
+}
+
+fn loaded_from(
+    target: &Target,
+    common: &CommonArgs,
+    (search, ends): (Option<&SearchArgs>, EndOptions),
+    purpose: Purpose,
+    own: &[OwnKey<'_>],
+) -> Result<Loaded, Failure> {
+    let mut source = typed(target, common, search, ends)?;
     for (option, table, key, value) in own {
         source.entries.set_by_option(option, table, key, value.clone());
     }
     let given = source.entries.clone();
-    validate_and_prepare(&target, source, common.quiet, (ends, purpose, &given), &mut purpose.preparation())
+    validate_and_prepare(target, source, common.quiet, (ends, purpose, &given), &mut purpose.preparation())
 }
 
 /// The keys of a chain, scenario or result with the options beside it.
 fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) -> Result<Source, Failure> {
-    let Target { input, is_scenario } = target;
-    let mut source = match (*is_scenario, &common.scenario) {
+    let Target { input, kind } = target;
+    let mut source = match (target.is_scenario(), &common.scenario) {
         (true, None) => read_source(input)?,
         (true, Some(other)) => return Err(two_scenarios(input, other, "a chain CSV as CHAIN")),
         (false, scenario) => option_source(scenario.as_deref())?,
     };
-    if !is_scenario {
+    let has_chain = source.entries.files().iter().any(|(key, _)| key.path() == "terrain.chain");
+    let on_chain = *kind == TargetKind::Chain || (*kind == TargetKind::Scenario && has_chain);
+    ends.check_counts(&input.given, *kind == TargetKind::Raster, on_chain)?;
+    if *kind == TargetKind::Raster {
+        forget_terrain(&mut source.entries);
+        // The files of a scenario beside the raster lie where that scenario does.
+        for (key, path) in source.entries.files().into_iter().filter(|(_, path)| path != "-") {
+            source.entries.redirect(key, &source.base.join(path).to_string_lossy());
+        }
+        source.entries.set_by_option("TERRAIN", "terrain", "dem", input.file.to_string_lossy().into_owned().into());
+        source.base = PathBuf::new();
+    }
+    if *kind == TargetKind::Chain {
         for key in SLICED_TERRAIN {
             source.entries.forget("terrain", key);
         }
@@ -172,7 +218,7 @@ fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends
         source.base = PathBuf::new();
     }
     apply_options(&mut source.entries, common, search, ends);
-    look_at_keys(&mut source, *is_scenario)?;
+    look_at_keys(&mut source, target.is_scenario())?;
     Ok(source)
 }
 
@@ -243,9 +289,13 @@ fn validate_and_prepare(
     prepare: Prepare<'_>,
 ) -> Result<Loaded, Failure> {
     let base = source.base;
-    let Target { input, is_scenario } = target;
+    let Target { input, kind } = target;
     let replaced = Purpose::replaced(&source.entries);
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
+    let lacking = scenario.lacks_on_a_dem();
+    if *kind == TargetKind::Raster && !lacking.is_empty() {
+        return Err(Failure::message(lacking_on_a_dem(&lacking)));
+    }
     let mut terrain = scenario.terrain.clone().ok_or_else(|| {
         let name = input.given.display();
         // Results of chains name their terrain; those of maps and fans cover all headings and have no chain.
@@ -256,7 +306,7 @@ fn validate_and_prepare(
         })
     })?;
     let chain_name = input.file.to_string_lossy().into_owned();
-    if !is_scenario && terrain == (TerrainSource::Chain { path: chain_name.into() }) {
+    if *kind == TargetKind::Chain && terrain == (TerrainSource::Chain { path: chain_name.into() }) {
         // The name as given, in case it is not UTF-8.
         terrain = TerrainSource::Chain { path: input.file.clone() };
         scenario.terrain = Some(terrain.clone());
@@ -470,8 +520,8 @@ pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure
 }
 
 /// The keys of a terrain that is sliced.
-const SLICED_TERRAIN: [&str; 9] =
-    ["dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m", "via_lonlat_deg"];
+const SLICED_TERRAIN: [&str; 10] =
+    ["route", "dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m", "via_lonlat_deg"];
 
 /// The keys of a terrain that is given as a chain.
 const CHAIN_TERRAIN: [&str; 3] = ["chain", "start_x_m", "goal_x_m"];
@@ -565,11 +615,7 @@ fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&Sea
     if *accept_map_scale {
         entries.set_by_option("--accept-map-scale", "terrain", "accept_map_scale", true.into());
     }
-    for (end, key) in [(End::Start, "start_x_m"), (End::Goal, "goal_x_m")] {
-        if let Some(x_m) = ends.x_m[end as usize] {
-            entries.set_by_option(&ends.place(end), "terrain", key, x_m.into());
-        }
-    }
+    ends.set(entries);
     let Some(SearchArgs { points_per_segment, node_spacing_max_m, effort }) = search else { return };
     if let Some(points) = points_per_segment {
         let value = points.parse::<i64>().map_or_else(|_| toml::Value::from(points.clone()), toml::Value::from);

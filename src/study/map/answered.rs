@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use super::{super::Defect, MapQuestion, MapStudyError, PreparedMap, Spot};
 use crate::{
+    ballistics::PathBounds,
+    ground::Surface,
     path::HopPath,
     progress::Progress,
     reach::map::{
@@ -102,7 +104,7 @@ impl PreparedMap {
             let unreached = paths.iter().zip(&self.goals).filter(|(path, _)| path.is_none());
             warnings.extend(unreached.map(|(_, goal)| {
                 format!(
-                    "no trials were flown to the goal ({:.3}, {:.3}) m: it is not reachable over these posts, so there is no path to fly",
+                    "no trials were flown to the goal ({:.3}, {:.3}) m: it was not reached over these nodes, so there is no path to fly",
                     goal.at.x, goal.at.y
                 )
             }));
@@ -212,6 +214,16 @@ impl PreparedMap {
         goals.map(|(goal, path)| path.as_ref().map_or(Ok(None), |path| fly(goal, path))).collect()
     }
 
+    /// The fewest hops of any path from the nearest start to a goal, by the speeds alone.
+    fn hops_lower_bound(&self, goal: &Spot) -> Option<u64> {
+        let limits = self.ground.hopper().limits();
+        let speeds_m_s = (limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s());
+        let bounds = PathBounds::new(speeds_m_s.0, speeds_m_s.1, self.ground.gravity_m_s2());
+        let to = self.ground.position(goal.at)?;
+        let from = self.starts.iter().filter_map(|start| self.ground.position(start.at));
+        from.filter_map(|from| bounds.hops((to.at - from.at).norm(), to.z_m - from.z_m)).min()
+    }
+
     /// The record of a goal.
     fn goal_record(
         &self,
@@ -229,6 +241,7 @@ impl PreparedMap {
             offset_m: (goal.at - goal.asked).norm(),
             start: out.source(self.lattice, goal.post).map(|number| number + 1),
             hops: reached(out),
+            hops_lower_bound: self.hops_lower_bound(goal),
             searched: out.searched(node),
             return_hops: back.map(reached),
             path: path.map(|path| HopRecord::rows(path, self.projection.as_ref().ok())).unwrap_or_default(),

@@ -10,7 +10,7 @@ use std::{ops::Range, path::PathBuf, sync::Arc};
 use advice::advice;
 pub(super) use flyer::Flyer;
 
-use super::{Planned, TrialGround};
+use super::{CaseError, Planned, TrialGround};
 use crate::{
     graph::{NodesError, SearchError},
     ground::DemGround,
@@ -56,6 +56,9 @@ pub enum SimulateError {
     /// The replanning policy.
     #[error(transparent)]
     Search(#[from] SearchError),
+    /// A question that trials do not answer.
+    #[error(transparent)]
+    Case(#[from] CaseError),
     /// The trials.
     #[error(transparent)]
     Simulation(#[from] SimulationError),

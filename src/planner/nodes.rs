@@ -1,0 +1,130 @@
+//! The nodes of a search over a DEM: a lattice, and single places beside it.
+
+use std::collections::HashSet;
+
+use nalgebra::Vector2;
+
+use super::SurfaceLattice;
+use crate::{
+    ground::{DemGround, MapPosition},
+    quantity::MapPoint,
+};
+
+/// A line whose ends are off a line of the posts by less than this, in post spacings, may run along it; the slice then decides. Far more than
+/// rounding errors, and so little that few other lines are meant.
+const NEARLY_ALONG: f64 = 1e-6;
+
+/// A node, as its number in the lattice, or behind all of these among the single places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SurfaceNode(pub(super) u32);
+
+impl SurfaceNode {
+    pub(super) const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// More nodes than can be numbered.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "found {nodes} nodes, {nodes_per_post} for each post spacing, expected at most {most}: make the spacing of nodes larger, or cut the raster"
+)]
+pub struct TooManyNodes {
+    /// How many.
+    pub nodes: usize,
+    /// For each post spacing.
+    pub nodes_per_post: usize,
+    /// The most.
+    pub most: usize,
+}
+
+/// The lattice and the single places.
+#[derive(Clone, Debug)]
+pub struct SurfaceNodes {
+    lattice: SurfaceLattice,
+    places: Vec<MapPosition>,
+}
+
+impl SurfaceNodes {
+    /// The most nodes: each has a label of 32 bytes, 8 GiB in all.
+    pub const MOST: usize = 1 << 28;
+
+    /// The lattice, and places beside it: start, goal, the nodes of a slice. Those without ground are left out.
+    ///
+    /// # Errors
+    /// [`TooManyNodes`].
+    pub fn new(
+        ground: &DemGround,
+        lattice: SurfaceLattice,
+        places: impl IntoIterator<Item = MapPoint>,
+    ) -> Result<Self, TooManyNodes> {
+        Self::check(&lattice, 0)?;
+        let mut known = HashSet::new();
+        let different = places.into_iter().filter(|at| known.insert((at.x.to_bits(), at.y.to_bits())));
+        let found: Vec<MapPosition> = different.filter_map(|at| ground.position(at)).collect();
+        Self::check(&lattice, found.len())?;
+        Ok(Self { lattice, places: found })
+    }
+
+    /// Checks the number of nodes of a lattice with so many places beside it.
+    ///
+    /// # Errors
+    /// [`TooManyNodes`].
+    pub const fn check(lattice: &SurfaceLattice, places: usize) -> Result<(), TooManyNodes> {
+        let nodes = lattice.count().saturating_add(places);
+        if nodes > Self::MOST {
+            return Err(TooManyNodes { nodes, nodes_per_post: lattice.nodes_per_post(), most: Self::MOST });
+        }
+        Ok(())
+    }
+
+    /// How many there are.
+    pub const fn count(&self) -> usize {
+        self.lattice.count() + self.places.len()
+    }
+
+    /// The lattice.
+    pub const fn lattice(&self) -> &SurfaceLattice {
+        &self.lattice
+    }
+
+    /// The node at exactly this place among the single places.
+    pub fn place(&self, at: MapPoint) -> Option<SurfaceNode> {
+        let index = self.places.iter().position(|place| place.at == at)?;
+        u32::try_from(self.lattice.count() + index).ok().map(SurfaceNode)
+    }
+
+    /// A node on the ground; `None` without elevation.
+    pub fn position(&self, ground: &DemGround, node: SurfaceNode) -> Option<MapPosition> {
+        match node.index().checked_sub(self.lattice.count()) {
+            Some(place) => self.places.get(place).copied(),
+            None => self.lattice.position(ground.terrain().dem(), self.lattice.node(node.index())),
+        }
+    }
+
+    /// All nodes in a square about a position, those of the lattice first.
+    pub(super) fn about(&self, at: MapPoint, distance_m: f64) -> impl Iterator<Item = SurfaceNode> + '_ {
+        let of_lattice = self.lattice.about(at, distance_m).map(|(i, j)| self.lattice.index(i, j));
+        let near = move |place: &MapPosition| (place.at - at).amax() <= distance_m;
+        let beside = (self.lattice.count()..).zip(&self.places).filter(move |(_, place)| near(place)).map(|(index, _)| index);
+        #[expect(clippy::cast_possible_truncation, reason = "at most MOST")]
+        of_lattice.chain(beside).map(|index| SurfaceNode(index as u32))
+    }
+
+    /// Whether the line between two nodes may run along edges of the triangulated DEM, where two facets bound it: decided in integers where
+    /// both are nodes of the lattice.
+    pub(super) fn may_run_along_edges(&self, ground: &DemGround, nodes: [SurfaceNode; 2], at: [MapPoint; 2]) -> bool {
+        if let [Some(from), Some(to)] =
+            nodes.map(|node| (node.index() < self.lattice.count()).then(|| self.lattice.node(node.index())))
+        {
+            return self.lattice.runs_along_edges(from, to);
+        }
+        let map = ground.terrain().dem().georeference();
+        let [from, to] = at.map(|at| {
+            let away = at - map.north_west();
+            Vector2::new(away.x / map.dx_m(), -away.y / map.dy_m())
+        });
+        let on_a_line = |a: f64, b: f64| (a - b).abs() < NEARLY_ALONG && (a - a.round()).abs() < NEARLY_ALONG;
+        on_a_line(from.x, to.x) || on_a_line(from.y, to.y) || on_a_line(from.x - from.y, to.x - to.y)
+    }
+}

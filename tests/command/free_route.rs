@@ -1,0 +1,193 @@
+//! Routes over a DEM in any direction, as a user sees them.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
+
+use std::{fs, path::Path};
+
+use serde_json::Value;
+
+use crate::desk::Desk;
+
+const HOPPER: &str = "[body]\nname = \"moon\"\n[hopper]\ntakeoff_speed_max_m_s = 2.5\nlanding_speed_max_m_s = 2.5\n\
+    [surface]\nfriction_coefficient = 0.6\n[terrain]\ndem = \"walled.asc\"\nstart_m = [102.3, 204.6]\ngoal_m = [125.2, 205.4]\n";
+
+/// Level ground of 30 x 20 posts of 1 m with a wall of steep posts across it and a gap in the wall in the north.
+fn walled() -> Desk {
+    let desk = Desk::with_dem();
+    let mut grid = "ncols 30\nnrows 20\nxllcorner 99.5\nyllcorner 199.5\ncellsize 1\n".to_owned();
+    for row in 0..20 {
+        let post = |col: usize| if row >= 3 && col == 14 { "30" } else { "0" };
+        grid.push_str(&(0..30).map(post).collect::<Vec<_>>().join(" "));
+        grid.push('\n');
+    }
+    desk.write("walled.asc", grid);
+    desk.write("straight.toml", HOPPER);
+    desk.write("free.toml", format!("{HOPPER}route = \"free\"\n"));
+    desk
+}
+
+#[test]
+fn a_free_route_goes_round_a_wall_that_stops_a_transect() {
+    let desk = walled();
+    assert_eq!(desk.run(&["check", "straight.toml"]).status, 1);
+    let files = ["-o", "path.csv", "--geojson", "path.geojson", "--plot", "path.svg", "--trajectory", "time.csv"];
+    let document = desk.json(&[&["plan", "free.toml"][..], &files].concat());
+    let (path, hops) = (document["path"].as_array().unwrap(), document["hops"].as_u64().unwrap());
+    assert_eq!((path.len() as u64, &document["verdict"], &document["verified"]), (hops, &"traversable".into(), &true.into()));
+    let lower = document["hops_lower_bound"].as_u64().unwrap();
+    assert!(lower > 1 && lower < hops, "{lower} of {hops} hops");
+    assert_eq!(document["scenario"]["terrain"]["route"], "free");
+    let route = &document["route"];
+    // A hop of v^2 / g = 3.9 m spans 8 nodes or more at three a post spacing.
+    assert_eq!((&route["kind"], &route["nodes_per_post"]), (&"free".into(), &3.into()));
+    let mut along_m = 0.0;
+    for hop in path {
+        let number = |key: &str| hop[key].as_f64().unwrap();
+        let place = |end: &str| format!("{},{}", hop[format!("{end}_map_x_m")], hop[format!("{end}_map_y_m")]);
+        assert!((number("takeoff_x_m") - along_m).abs() < 1e-9);
+        let (dx, dy) =
+            (number("landing_map_x_m") - number("takeoff_map_x_m"), number("landing_map_y_m") - number("takeoff_map_y_m"));
+        along_m += dx.hypot(dy);
+        assert!((number("landing_x_m") - along_m).abs() < 1e-9, "x is the distance along the path");
+        // Every hop by itself, over the raster.
+        let alone = desk.json(&[
+            "hop",
+            "walled.asc",
+            "--from",
+            &place("takeoff"),
+            "--to",
+            &place("landing"),
+            "--scenario",
+            "straight.toml",
+        ]);
+        assert_eq!(alone["feasible"], true);
+        for (ours, theirs) in [("takeoff_speed_m_s", &alone["best"]["takeoff_speed_m_s"]), ("heading_deg", &alone["heading_deg"])] {
+            assert!((number(ours) - theirs.as_f64().unwrap()).abs() < 1e-7, "{ours}: {} against {theirs}", hop[ours]);
+        }
+    }
+    let ends = [&path[0]["takeoff_map_x_m"], &path[0]["takeoff_map_y_m"], &path[path.len() - 1]["landing_map_x_m"]];
+    assert_eq!(ends.map(Value::as_f64), [Some(102.3), Some(204.6), Some(125.2)], "exactly where they were asked for");
+    let north = path.iter().map(|hop| hop["landing_map_y_m"].as_f64().unwrap()).fold(0.0, f64::max);
+    assert!(north > 215.0, "through the gap in the north, {north} m");
+    assert_eq!(desk.read("path.csv").lines().count(), 1 + path.len());
+    assert!(desk.read("path.svg").contains("<svg") && desk.read("time.csv").lines().count() > 20);
+    // The run writes the unrolled chain, and repeats.
+    assert_eq!(desk.run(&["run", "free.toml", "-o", "first"]).status, 0);
+    assert_eq!(desk.run(&["run", "first/result.json", "-o", "again"]).status, 0);
+    for file in ["chain.csv", "path.csv", "path.svg", "path.geojson", "result.json"] {
+        let read = |folder: &str| fs::read(desk.path().join(folder).join(file)).unwrap();
+        assert!(read("first") == read("again"), "{file}");
+    }
+    let end_m: f64 = desk.read("first/chain.csv").lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
+    assert!((end_m - along_m).abs() < 1e-9);
+}
+
+#[test]
+fn a_free_route_that_is_not_found_says_how_near_it_came() {
+    let desk = walled();
+    let grid = desk.read("walled.asc");
+    let closed: Vec<String> = grid
+        .lines()
+        .enumerate()
+        .map(|(i, line)| {
+            if i < 5 {
+                line.to_owned()
+            } else {
+                line.split(' ').enumerate().map(|(col, z)| if col == 14 { "30" } else { z }).collect::<Vec<_>>().join(" ")
+            }
+        })
+        .collect();
+    desk.write("walled.asc", closed.join("\n") + "\n");
+    let ran = desk.run(&["check", "free.toml"]);
+    assert_eq!(ran.status, 1, "{}", ran.stderr);
+    for part in
+        ["no-path-found", "not reached over these nodes; no path takes fewer than", "the reached place nearest to the goal is (11"]
+    {
+        assert!(ran.stdout.contains(part), "{part}: {}", ran.stdout);
+    }
+    let document = desk.json(&["plan", "free.toml"]);
+    assert_eq!((&document["hops"], &document["path"]), (&Value::Null, &serde_json::json!([])));
+    let east = document["route"]["nearest_m"][0].as_f64().unwrap();
+    assert!((110.0..114.0).contains(&east), "west of the wall, {east} m");
+}
+
+#[test]
+fn start_and_goal_are_positions_on_the_map_or_along_the_slice() {
+    let desk = walled();
+    let ends = |args: &[&str]| {
+        let document = desk.json(&[&["plan", "free.toml"], args].concat());
+        let path = document["path"].as_array().unwrap();
+        let at = |hop: &Value, end: &str| ["x", "y"].map(|axis| hop[format!("{end}_map_{axis}_m")].as_f64().unwrap());
+        [at(&path[0], "takeoff"), at(&path[path.len() - 1], "landing")]
+    };
+    assert_eq!(ends(&["--start", "103,202", "--goal", "110.5,208.25"]), [[103.0, 202.0], [110.5, 208.25]]);
+    assert_eq!(ends(&["--goal", "110.5,208.25"]), [[102.3, 204.6], [110.5, 208.25]]);
+    let [start, _] = ends(&["--start", "2"]);
+    assert!((start[0] - 104.3).abs() < 0.01 && (start[1] - 204.67).abs() < 0.01, "{start:?}");
+}
+
+#[test]
+fn what_a_free_route_cannot_is_refused_with_what_can() {
+    let desk = walled();
+    desk.write("pairs.csv", "start_x_m,goal_x_m\n0,4\n");
+    let transect = "only along a transect, and terrain.route is \"free\": set terrain.route = \"transect\"";
+    let trials = ["--set", "uncertainty.takeoff_speed_sigma_fraction=0.01", "--set", "uncertainty.goal_tolerance_m=1"];
+    for (args, said) in [
+        (&["check", "free.toml", "--prove"][..], transect),
+        (&["plan", "free.toml", "--prove"], transect),
+        (&["check", "free.toml", "--pairs", "pairs.csv"], transect),
+        (&[&["simulate", "free.toml"][..], &trials].concat(), transect),
+        (&[&["plan", "free.toml", "--front", "hops,risk"][..], &trials].concat(), transect),
+        (&["require", "free.toml", "--vary", "hopper.takeoff_speed_max_m_s"], transect),
+        (&["trade", "free.toml", "--vary", "hopper.takeoff_speed_max_m_s=2:3:2"], transect),
+        (&["check", "scenario.toml", "--set", "terrain.route=free"], "terrain is a mesh or a chain, expected a dem"),
+        (&["check", "free.toml", "--set", "terrain.via_m=[[103, 204]]"], "terrain.via_m has no meaning beside terrain.route"),
+        (&["check", "free.toml", "--set", "search.points_per_segment=3"], "give node_spacing_max_m"),
+        (&["check", "free.toml", "--set", "terrain.route=any"], "transect, free"),
+        (&["check", "free.toml", "--node-spacing-max-m", "1e-5"], "make the spacing of nodes larger"),
+        (&["check", "free.toml", "--goal", "1,1"], "the goal point (1 m, 1 m) is off the map"),
+    ] {
+        let ran = desk.run(args);
+        let sentence = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(ran.status == 2 && sentence.contains(said), "{args:?}: {ran:?}");
+    }
+}
+
+#[test]
+fn what_a_free_route_leaves_out_is_warned_of() {
+    let desk = walled();
+    for (sets, said) in [
+        (&["uncertainty.takeoff_speed_sigma_fraction=0.01", "uncertainty.goal_tolerance_m=1"][..], "have no effect on it"),
+        (&["hopper.takeoff_speed_step_m_s=0.1"], "exact commands"),
+        (&["search.node_spacing_max_m=1"], "fewer than 8"),
+    ] {
+        let args: Vec<&str> = ["plan", "free.toml"].into_iter().chain(sets.iter().flat_map(|set| ["--set", set])).collect();
+        let ran = desk.run(&args);
+        assert!(ran.status == 0 && ran.stderr.contains(said), "{sets:?}: {ran:?}");
+    }
+}
+
+/// The commands of the document, one after another in an empty folder beside the data.
+#[test]
+fn the_commands_of_the_document_run() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let desk = Desk::new();
+    let document = fs::read_to_string(root.join("docs/missions.md")).unwrap();
+    let commands: Vec<&str> = document.lines().filter_map(|line| line.strip_prefix("chta ")).collect();
+    assert!(commands.len() >= 4, "{commands:?}");
+    for command in commands {
+        let words: Vec<String> = command
+            .split_whitespace()
+            .map(|word| if word.starts_with("data/") { root.join(word).display().to_string() } else { word.to_owned() })
+            .collect();
+        let ran = desk.run(&words.iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!((ran.status, ran.stderr.as_str()), (0, ""), "{command}");
+        for hops in ["25 hops over 360 m", "27 over 349 m"] {
+            assert!(document.contains(hops));
+        }
+        let said = if command.contains("free.toml") { "25 hops" } else { "27 hops" };
+        if command.starts_with("plan") {
+            assert!(ran.stdout.contains(said), "{command}: {}", ran.stdout);
+        }
+    }
+}
