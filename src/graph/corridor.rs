@@ -377,7 +377,7 @@ mod tests {
                 let away = to.at - from.at;
                 let (sight, heading) = (LineOfSight::new(away.norm(), to.z_m - from.z_m), away.normalize());
                 let lofts = ground.lofts_by_walk(&from, &to, sight, heading);
-                let of_slice = ground.windows(&from, &to).is_some_and(|windows| windows.lofts.first().is_some());
+                let of_slice = ground.windows(&from, &to).is_some_and(|windows| !windows.lofts.is_empty());
                 // Along an edge between facets a walk sees one of them, a slice both.
                 apart.set(apart.get() + u32::from(lofts.is_some() != of_slice));
                 let lofts = lofts?;

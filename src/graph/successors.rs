@@ -55,7 +55,12 @@ impl fmt::Debug for Successors {
         let Weighted { edges, fewest, weights, .. } = self.of_all.as_ref();
         let edges: usize = edges.iter().map(Vec::len).sum();
         let debug = &mut formatter.debug_struct("Successors");
-        debug.field("extra", &self.extra).field("edges", &edges).field("fewest", fewest).field("weights", weights).finish()
+        debug
+            .field("extra", &self.extra)
+            .field("edges", &edges)
+            .field("fewest", fewest)
+            .field("weights", weights)
+            .finish_non_exhaustive()
     }
 }
 

@@ -139,9 +139,10 @@ mod tests {
     /// Against draws of the place and of friction.
     #[test]
     fn the_share_is_that_of_drawn_landings() {
+        const CASES: u32 = 200;
+        const DRAWS: u32 = 4000;
         let draw = &mut Draw::seeded(1712);
         let (mut sum, mut far_off, mut doubtful) = (0.0, 0, 0);
-        const CASES: u32 = 200;
         for _ in 0..CASES {
             let mu = draw.uniform(0.6, 1.1);
             let relief_m = draw.uniform(0.2, 0.9);
@@ -158,7 +159,6 @@ mod tests {
             let back = Vector3::new(-heading.x, -heading.y, -slope);
             let triangles = ground.triangles();
             let mut refused = 0;
-            const DRAWS: u32 = 4000;
             for _ in 0..DRAWS {
                 let (ahead, aside) = (normal(draw) * scatter.along_m, normal(draw) * scatter.across_m);
                 let at = target.at + heading * ahead + Vector2::new(-heading.y, heading.x) * aside;

@@ -305,31 +305,7 @@ impl MapAnswer {
             );
         }
         for goal in &self.goals {
-            let unreached = match self.hops_max {
-                Some(most) if !goal.searched => format!("not within {}, and not searched beyond", format_hops(most)),
-                _ => "not reached over these nodes".to_owned(),
-            };
-            let from = goal.start.filter(|_| self.starts.len() > 1).map_or(String::new(), |number| format!(" from start {number}"));
-            let hops = goal.hops.map_or(unreached, |hops| format_hops(hops) + &from);
-            let back = match goal.return_hops {
-                Some(Some(hops)) => format!(", {} back", format_hops(hops)),
-                Some(None) => ", no path back".to_owned(),
-                None => String::new(),
-            };
-            let _ = writeln!(
-                text,
-                "goal ({:.3}, {:.3}) m, {:.3} m from the place asked for: {hops}{back}",
-                goal.x_m, goal.y_m, goal.offset_m
-            );
-            if let Some(lower) = goal.hops_lower_bound.filter(|_| goal.hops.is_some() || goal.searched) {
-                let _ = writeln!(text, "  {}", hops_bound(goal.hops.map(i16::unsigned_abs).map(u64::from), lower));
-            }
-            for line in goal.totals.iter().flat_map(stores_lines) {
-                let _ = writeln!(text, "  {line}");
-            }
-            if let Some(shortage) = &goal.propellant_shortage {
-                let _ = writeln!(text, "  not with its propellant: {}", shortage.sentence());
-            }
+            text.push_str(&self.goal_text(goal));
         }
         if !self.hops_histogram.is_empty() {
             let _ = writeln!(text, "\n{:>6}{:>12}", "hops", "posts");
@@ -346,6 +322,38 @@ impl MapAnswer {
                 }
                 text.push_str(&simulation.text());
             }
+        }
+        text
+    }
+
+    /// How many hops a goal is away, and what bounds them.
+    fn goal_text(&self, goal: &GoalRecord) -> String {
+        let mut text = String::new();
+        // Writing to a String cannot fail.
+        let unreached = match self.hops_max {
+            Some(most) if !goal.searched => format!("not within {}, and not searched beyond", format_hops(most)),
+            _ => "not reached over these nodes".to_owned(),
+        };
+        let from = goal.start.filter(|_| self.starts.len() > 1).map_or(String::new(), |number| format!(" from start {number}"));
+        let hops = goal.hops.map_or(unreached, |hops| format_hops(hops) + &from);
+        let back = match goal.return_hops {
+            Some(Some(hops)) => format!(", {} back", format_hops(hops)),
+            Some(None) => ", no path back".to_owned(),
+            None => String::new(),
+        };
+        let _ = writeln!(
+            text,
+            "goal ({:.3}, {:.3}) m, {:.3} m from the place asked for: {hops}{back}",
+            goal.x_m, goal.y_m, goal.offset_m
+        );
+        if let Some(lower) = goal.hops_lower_bound.filter(|_| goal.hops.is_some() || goal.searched) {
+            let _ = writeln!(text, "  {}", hops_bound(goal.hops.map(i16::unsigned_abs).map(u64::from), lower));
+        }
+        for line in goal.totals.iter().flat_map(stores_lines) {
+            let _ = writeln!(text, "  {line}");
+        }
+        if let Some(shortage) = &goal.propellant_shortage {
+            let _ = writeln!(text, "  not with its propellant: {}", shortage.sentence());
         }
         text
     }
