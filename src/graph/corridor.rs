@@ -331,7 +331,7 @@ mod tests {
         Uncertainty { takeoff_speed_sigma_fraction: 0.02, takeoff_angle_sigma: Angle::from_radians(0.02), ..Uncertainty::NONE };
 
     fn rough_ground(draw: &mut Draw) -> DemGround {
-        let heights = (0..14 * 18).map(|_| if draw.chance(0.04) { f64::NAN } else { draw.uniform(0.0, 0.35) }).collect();
+        let heights = (0..14 * 18).map(|_| if draw.chance(0.02) { f64::NAN } else { draw.uniform(0.0, 0.3) }).collect();
         let dem = Dem::new(14, 18, heights, GeoReference::local(MapPoint::new(3.0, 20.0), 1.0, 1.2).unwrap()).unwrap();
         let grip = Some(Grip::Friction(FrictionCone::new(draw.uniform(0.7, 1.2)).unwrap()));
         let surface = SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds };
@@ -363,7 +363,7 @@ mod tests {
         let draw = &mut Draw::seeded(1701);
         let (mut corridors, mut edges, mut fewer) = (0, 0, 0);
         let apart = Cell::new(0);
-        for round in 0..14 {
+        for round in 0..10 {
             let (ground, beside) = (rough_ground(draw), Beside::ALL[round % 2]);
             let Some(found) = corridor(&ground, beside, 60) else { continue };
             corridors += 1;
