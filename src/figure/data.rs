@@ -191,7 +191,8 @@ impl FigureData {
         let view_x_m = view(input, chain_x_m);
         let towards = Direction::between(input.start.point.x_m, input.goal.point.x_m).unwrap_or(Direction::Forward);
         let inside = |x_m: f64| nodes.stations().partition_point(|station| station.point.x_m < x_m);
-        let visible = &nodes.stations()[inside(view_x_m.0)..inside(view_x_m.1.next_up())];
+        let visible = if input.is_unrolled { 0..0 } else { inside(view_x_m.0)..inside(view_x_m.1.next_up()) };
+        let visible = &nodes.stations()[visible];
         Ok(Self {
             view_x_m,
             chain_x_m,

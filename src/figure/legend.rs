@@ -75,7 +75,9 @@ pub(super) fn entries(data: &FigureData) -> Vec<(Key, String)> {
             }
         }
     }
-    found.push((Key::Node, thinned_text("node", &data.nodes)));
+    if data.nodes.of > 0 {
+        found.push((Key::Node, thinned_text("node", &data.nodes)));
+    }
     let uses = Closure::ALL.map(GroundUse::Closed).into_iter().chain([GroundUse::LandingOnly, GroundUse::TakeoffOnly]);
     for allows in uses.filter(|allows| data.spans.iter().any(|span| span.allows == *allows)) {
         let text = match allows {

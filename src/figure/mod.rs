@@ -89,6 +89,8 @@ pub struct FigureInput<'a> {
     pub start: Station,
     /// Where it should end.
     pub goal: Station,
+    /// Whether the chain was unrolled along a route over a DEM: the nodes of the search then lie beside it, and none are drawn.
+    pub is_unrolled: bool,
     /// The texts of the title.
     pub title: FigureTitle,
 }
@@ -168,7 +170,8 @@ pub enum FigureError {
 /// let Outcome::Path { legs, .. } = &answer.outcome else { panic!("no path") };
 /// let path = generate(&test, legs, TakeoffChoice::LeastSpeed, Split::FullReach)?;
 /// let title = FigureTitle { body: "Mars".into(), ..FigureTitle::default() };
-/// let svg = draw(&FigureInput { test: &test, answer: &answer, path: Some(&path), start, goal, title })?.to_svg()?;
+/// let input = FigureInput { test: &test, answer: &answer, path: Some(&path), start, goal, is_unrolled: false, title };
+/// let svg = draw(&input)?.to_svg()?;
 /// assert!(svg.starts_with("<svg") && svg.contains("traversable"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

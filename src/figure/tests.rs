@@ -46,7 +46,7 @@ impl Case {
         };
         let (name, body, ground) = (self.name.to_owned(), "Mars".to_owned(), self.ground.to_owned());
         let title = FigureTitle { name, body, ground, ..FigureTitle::default() };
-        look(&FigureInput { test: &test, answer: &answer, path: path.as_ref(), start, goal, title })
+        look(&FigureInput { test: &test, answer: &answer, path: path.as_ref(), start, goal, is_unrolled: false, title })
     }
 }
 

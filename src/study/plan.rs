@@ -239,6 +239,7 @@ impl Planned {
             path: self.path.as_ref(),
             start: self.ends.0,
             goal: self.ends.1,
+            is_unrolled: self.answer.check.route.is_some(),
             title: FigureTitle {
                 name: scenario.title.clone().unwrap_or_default(),
                 body: scenario.body.name.clone().unwrap_or_default(),

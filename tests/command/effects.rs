@@ -319,7 +319,7 @@ fn a_goal_that_is_not_reachable_has_no_trials_and_the_map_says_so() {
     let map = ["map", "ground.tif", "--start", "1,2", "--goal", "15,12", "--simulate", "--scenario", "map.toml"];
     let ran = desk.run(&[&map[..], &slow].concat());
     assert_eq!(ran.status, 1, "{ran:?}");
-    assert!(ran.stderr.contains("no trials were flown to the goal (15.000, 12.000) m: it is not reachable"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("no trials were flown to the goal (15.000, 12.000) m: it was not reached"), "{}", ran.stderr);
 }
 
 #[test]

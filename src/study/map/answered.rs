@@ -216,9 +216,9 @@ impl PreparedMap {
 
     /// The fewest hops of any path from the nearest start to a goal, by the speeds alone.
     fn hops_lower_bound(&self, goal: &Spot) -> Option<u64> {
-        let limits = self.ground.hopper().limits();
+        let limits = self.planning.hopper().limits();
         let speeds_m_s = (limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s());
-        let bounds = PathBounds::new(speeds_m_s.0, speeds_m_s.1, self.ground.gravity_m_s2());
+        let bounds = PathBounds::new(speeds_m_s.0, speeds_m_s.1, self.planning.gravity_m_s2());
         let to = self.ground.position(goal.at)?;
         let from = self.starts.iter().filter_map(|start| self.ground.position(start.at));
         from.filter_map(|from| bounds.hops((to.at - from.at).norm(), to.z_m - from.z_m)).min()
