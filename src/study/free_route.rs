@@ -35,7 +35,7 @@ pub enum FreeRouteError {
     Dem(Box<SimulateError>),
     /// A hop of the route that its slice on the unrolled chain does not have.
     #[error(
-        "hop {hop} of the route is none along its unrolled chain; this is a defect of chta, please report it with the scenario"
+        "hop {hop} of the route is not feasible along its unrolled chain; this is a defect of chta, please report it with the scenario"
     )]
     Lost {
         /// Which hop, from 1.
