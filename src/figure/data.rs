@@ -44,6 +44,8 @@ pub struct FigureData {
     pub subject: Subject,
     /// Whether the hopper prepares its hops, so that times of missions have preparations in them.
     pub prepares: bool,
+    /// What x is measured along.
+    pub along: &'static str,
 }
 
 /// A sequence thinned to every n-th item.
@@ -73,6 +75,8 @@ pub enum Subject {
     NoCommands(u64, Option<String>),
     /// No hop at all can take off or land at start, goal or both.
     EndpointsRefuse(Vec<EndpointRefusal>),
+    /// No route over the nodes of a DEM.
+    RouteNotFound,
 }
 
 /// One hop as drawn.
@@ -179,6 +183,7 @@ impl FigureData {
         let chain = input.test.chain();
         let nodes = NodeSet::new(chain, input.start, input.goal, input.answer.spacing)?;
         let subject = match &input.answer.outcome {
+            Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) if input.plan_view.is_some() => Subject::RouteNotFound,
             Outcome::Path { .. } => match input.path {
                 Some(path) => path_subject(input, path),
                 None if input.test.hopper().limits().steps.is_continuous() => return Err(FigureError::NoHops),
@@ -191,7 +196,7 @@ impl FigureData {
         let view_x_m = view(input, chain_x_m);
         let towards = Direction::between(input.start.point.x_m, input.goal.point.x_m).unwrap_or(Direction::Forward);
         let inside = |x_m: f64| nodes.stations().partition_point(|station| station.point.x_m < x_m);
-        let visible = if input.is_unrolled { 0..0 } else { inside(view_x_m.0)..inside(view_x_m.1.next_up()) };
+        let visible = if input.plan_view.is_some() { 0..0 } else { inside(view_x_m.0)..inside(view_x_m.1.next_up()) };
         let visible = &nodes.stations()[visible];
         Ok(Self {
             view_x_m,
@@ -203,6 +208,7 @@ impl FigureData {
             goal: input.goal.point,
             subject,
             prepares: input.test.hopper().limits().preparation_time_s.is_some(),
+            along: if input.plan_view.is_some() { "route" } else { "chain" },
         })
     }
 

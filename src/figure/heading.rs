@@ -125,6 +125,7 @@ fn verdict(answer: &Answer, data: &FigureData) -> String {
             let plural = if *hops == 1 { "" } else { "s" };
             format!("no commands in steps found for the path of {hops} hop{plural}")
         }
+        Subject::RouteNotFound => format!("not reached over {} nodes", answer.nodes),
         Subject::EndpointsRefuse(refusals) => {
             let refusing: Vec<_> = refusals.iter().map(|refusal| end_name(refusal.contact)).collect();
             let verb = if refusing.len() == 1 { "refuses" } else { "refuse" };
@@ -161,6 +162,9 @@ fn remarks(data: &FigureData) -> Vec<String> {
         Subject::NoCommands(_, refusal) => {
             let refusal = refusal.as_ref().map(|refusal| format!("Refused: {refusal}."));
             refusal.into_iter().chain(std::iter::once("Smaller steps, or another path, may have commands.".to_owned())).collect()
+        }
+        Subject::RouteNotFound => {
+            vec!["Profile: the straight line from start to goal. Denser nodes may still hold a route.".to_owned()]
         }
         Subject::EndpointsRefuse(refusals) => refusals.iter().map(endpoint).collect(),
     }

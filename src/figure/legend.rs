@@ -67,7 +67,7 @@ pub(super) fn entries(data: &FigureData) -> Vec<(Key, String)> {
                 found.push((Key::NearestMiss, "nearest miss".to_owned()));
             }
         }
-        Subject::NoCommands(..) => {}
+        Subject::NoCommands(..) | Subject::RouteNotFound => {}
         Subject::EndpointsRefuse(refusals) => {
             found.push((Key::Refusing, "refuses whatever the hop".to_owned()));
             if refusals.iter().any(|refusal| refusal.nearest.is_some()) {

@@ -7,6 +7,9 @@
 //!   | __/     \___/     \___           |
 //!   +----------------------------------+
 //!   legend
+//!   +----------------------------------+   a route in any direction: the path from above,
+//!   |  o---.---.--<>                   |   over a hillshade
+//!   +----------------------------------+
 //!   +----------------------------------+   each hop's feasible take-off angles and the one chosen;
 //!   |    |         |                   |   without a path: what refused, how often
 //!   +----------------------------------+
@@ -55,7 +58,7 @@ pub use data::{Cone, FigureData, HopFigure, MOST_HOPS_DRAWN, StoppedFigure, Subj
 pub use heading::conditions;
 pub use map::{
     GoalMark, HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure,
-    MapPosts, RasterStyle, ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,
+    MapPosts, PlanView, RasterStyle, ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,
 };
 pub use picture::{Caption, Picture, PictureFormat};
 pub use rose::draw_rose;
@@ -89,8 +92,9 @@ pub struct FigureInput<'a> {
     pub start: Station,
     /// Where it should end.
     pub goal: Station,
-    /// Whether the chain was unrolled along a route over a DEM: the nodes of the search then lie beside it, and none are drawn.
-    pub is_unrolled: bool,
+    /// The route from above, if the chain was unrolled along one over a DEM: the nodes of the search then lie beside the chain, and the profile
+    /// shows none.
+    pub plan_view: Option<PlanView<'a>>,
     /// The texts of the title.
     pub title: FigureTitle,
 }
@@ -170,7 +174,7 @@ pub enum FigureError {
 /// let Outcome::Path { legs, .. } = &answer.outcome else { panic!("no path") };
 /// let path = generate(&test, legs, TakeoffChoice::LeastSpeed, Split::FullReach)?;
 /// let title = FigureTitle { body: "Mars".into(), ..FigureTitle::default() };
-/// let input = FigureInput { test: &test, answer: &answer, path: Some(&path), start, goal, is_unrolled: false, title };
+/// let input = FigureInput { test: &test, answer: &answer, path: Some(&path), start, goal, plan_view: None, title };
 /// let svg = draw(&input)?.to_svg()?;
 /// assert!(svg.starts_with("<svg") && svg.contains("traversable"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -186,10 +190,11 @@ fn laid_out(input: &FigureInput<'_>, data: &FigureData) -> (Sheet, f64) {
     let top = heading::above(&mut sheet, input, data);
     let end = terrain_panel::TerrainPanel::new(data, input.test.chain(), top).draw(&mut sheet);
     let end = legend::draw(&mut sheet, &legend::entries(data), end + 0.5) + 2.5;
+    let end = input.plan_view.as_ref().map_or(end, |view| map::draw_plan_view(&mut sheet, view, end) + 2.5);
     let end = match &data.subject {
         Subject::Path { hops, .. } if !hops.shown.is_empty() => angle_panel::draw(&mut sheet, hops, end),
         Subject::Stopped(stop) => stop_panel::draw(&mut sheet, stop, end),
-        Subject::Path { .. } | Subject::NoCommands(..) | Subject::EndpointsRefuse(_) => end,
+        Subject::Path { .. } | Subject::NoCommands(..) | Subject::EndpointsRefuse(_) | Subject::RouteNotFound => end,
     };
     let end = heading::below(&mut sheet, data, end + 1.0);
     (sheet, end + 2.5)

@@ -52,7 +52,7 @@ impl<'a> TerrainPanel<'a> {
         match &self.data.subject {
             Subject::Path { hops, .. } => self.hops(sheet, &hops.shown),
             Subject::Stopped(stop) => self.stop(sheet, stop),
-            Subject::NoCommands(..) => {}
+            Subject::NoCommands(..) | Subject::RouteNotFound => {}
             Subject::EndpointsRefuse(refusals) => {
                 for refusal in refusals {
                     symbols::cross(sheet, self.frame.place(refusal.station.point));
@@ -73,7 +73,8 @@ impl<'a> TerrainPanel<'a> {
         let (from, to) = self.data.chain_x_m;
         let cut =
             if self.data.is_cut() { format!("; part of a chain from {} to {} m", short(from), short(to)) } else { String::new() };
-        axes(sheet, &self.panel, &self.frame, &format!("distance along the chain, x (m){cut}"), "height, z (m)");
+        let along = format!("distance along the {}, x (m){cut}", self.data.along);
+        axes(sheet, &self.panel, &self.frame, &along, "height, z (m)");
     }
 
     /// The profile with its nodes and the uses of its stretches.
@@ -269,7 +270,7 @@ fn heights(data: &FigureData, chain: &ConstrainedChain) -> (f64, f64) {
     let ground = stretch(chain, data.view_x_m.0, data.view_x_m.1).into_iter().map(|point| point.z_m);
     let flights = match &data.subject {
         Subject::Path { hops, .. } => hops.shown.as_slice(),
-        Subject::Stopped(_) | Subject::NoCommands(..) | Subject::EndpointsRefuse(_) => &[],
+        Subject::Stopped(_) | Subject::NoCommands(..) | Subject::EndpointsRefuse(_) | Subject::RouteNotFound => &[],
     };
     ground
         .chain(flights.iter().map(|hop| hop.hop.apex_z_m))

@@ -1,7 +1,7 @@
 //! The figures of many journeys: contents, texts and legibility.
 
 use super::{
-    samples::check_well_formed,
+    samples::{self, check_picture, check_well_formed},
     sheet::{Label, Mark},
     *,
 };
@@ -11,7 +11,8 @@ use crate::{
     graph::{Outcome, PointSpacing, SearchOptions, is_usable, search},
     hop::Split,
     path::generate,
-    quantity::{Angle, AngleInterval, ChainPoint},
+    quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
+    terrain::{Dem, GeoReference},
     world::{CommandSteps, Contact, Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
@@ -46,7 +47,7 @@ impl Case {
         };
         let (name, body, ground) = (self.name.to_owned(), "Mars".to_owned(), self.ground.to_owned());
         let title = FigureTitle { name, body, ground, ..FigureTitle::default() };
-        look(&FigureInput { test: &test, answer: &answer, path: path.as_ref(), start, goal, is_unrolled: false, title })
+        look(&FigureInput { test: &test, answer: &answer, path: path.as_ref(), start, goal, plan_view: None, title })
     }
 }
 
@@ -430,4 +431,39 @@ fn long_paths_are_thinned_and_say_so() {
 fn a_path_without_its_hops_is_refused() {
     let error = paper().with(|input| draw(&FigureInput { path: None, ..input.clone() })).unwrap_err();
     assert_eq!(error, FigureError::NoHops);
+}
+
+/// A path over level ground, and none: seen from above as well, below the profile.
+#[test]
+fn a_route_is_drawn_from_above_below_its_profile() {
+    let map = GeoReference::local(MapPoint::new(0.0, 60.0), 2.0, 2.0).unwrap();
+    let heights = (0..31 * 41).map(|i| if i == 700 { f64::NAN } else { 0.2 * libm::sin(f64::from(i)) }).collect();
+    let dem = Dem::new(31, 41, heights, map).unwrap();
+    let at = |x, y| MapPoint::new(x, y);
+    let cases = [paper(), nearly()];
+    for (case, found) in cases.iter().zip([true, false]) {
+        case.with(|input| {
+            let places: Vec<_> = input
+                .path
+                .map(|path| (0..=path.hops.len()).map(|hop| at(5.0 + 5.0 * hop as f64, 10.0 + hop as f64)).collect())
+                .unwrap_or_default();
+            let goal = places.last().copied().unwrap_or(at(70.0, 50.0));
+            let nearest = (!found).then_some(at(31.0, 22.0));
+            let view = PlanView { dem: &dem, start: at(5.0, 10.0), goal, path: places.clone(), nearest };
+            let input = FigureInput { plan_view: Some(view), ..input.clone() };
+            let plain = draw(&FigureInput { plan_view: None, ..input.clone() }).unwrap();
+            let picture = check_picture(&format!("route {found}"), || draw(&input).unwrap());
+            assert!(picture.height_mm > plain.height_mm + 40.0, "{} {}", picture.height_mm, plain.height_mm);
+            let texts = samples::texts(&picture);
+            let words = match found {
+                true => ["path and its landings", "goal, reached", "map y, north (m)", "distance along the route"],
+                false => ["reached place nearest to the goal", "goal, not reached", "not reached over", "distance along the route"],
+            };
+            for words in words {
+                assert!(texts.contains(words), "{words:?} is missing in {texts}");
+            }
+            assert!(!texts.contains("refuse"), "{texts}");
+            assert!(found || texts.contains("no data"), "{texts}");
+        });
+    }
 }

@@ -12,8 +12,8 @@ use super::{
 };
 #[cfg(feature = "plot")]
 use crate::figure::{
-    Caption, FigureError, FigureInput, FigureTitle, FrontAgainst, FrontFigure, FrontPoint, FrontValue, Picture, Success, draw,
-    draw_front,
+    Caption, FigureError, FigureInput, FigureTitle, FrontAgainst, FrontFigure, FrontPoint, FrontValue, Picture, PlanView, Success,
+    draw, draw_front,
 };
 use crate::{
     chain::Station,
@@ -22,6 +22,7 @@ use crate::{
     hop::HopTest,
     path::{Execution, HopPath, TooManyHops, Violation},
     progress::Progress,
+    quantity::MapPoint,
     report::{HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, path_geojson, write_path_csv},
     scenario::{Route, UncertaintyKeys},
 };
@@ -233,19 +234,37 @@ impl Planned {
     #[cfg(feature = "plot")]
     pub fn picture(&self) -> Result<Picture, FigureError> {
         let scenario = &self.case.scenario;
+        // The search of a free route has read the raster.
+        let ground = self.answer.check.route.and_then(|_| self.dem_ground().ok().flatten());
         draw(&FigureInput {
             test: &self.test,
             answer: &self.found,
             path: self.path.as_ref(),
             start: self.ends.0,
             goal: self.ends.1,
-            is_unrolled: self.answer.check.route.is_some(),
+            plan_view: ground.as_ref().and_then(|ground| self.plan_view(ground)),
             title: FigureTitle {
                 name: scenario.title.clone().unwrap_or_default(),
                 body: scenario.body.name.clone().unwrap_or_default(),
                 ground: super::captions::format_ground(scenario),
                 refusal: self.answer.check.commands_refusal.clone(),
             },
+        })
+    }
+
+    /// A free route from above.
+    #[cfg(feature = "plot")]
+    fn plan_view<'g>(&self, ground: &'g DemGround) -> Option<PlanView<'g>> {
+        let geometry = self.case.prepared.chain.geometry();
+        let start = geometry.map_point(&self.ends.0)?;
+        let landings = self.path.iter().flat_map(|path| &path.hops).filter_map(|hop| hop.landing.map());
+        let [x_m, y_m, _] = self.answer.check.route?.nearest_m;
+        Some(PlanView {
+            dem: ground.terrain().dem(),
+            start,
+            goal: geometry.map_point(&self.ends.1)?,
+            path: self.path.iter().map(|_| start).chain(landings).collect(),
+            nearest: self.path.is_none().then(|| MapPoint::new(x_m, y_m)),
         })
     }
 

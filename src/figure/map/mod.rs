@@ -6,6 +6,7 @@ mod hops;
 mod landings;
 mod names;
 mod panel;
+mod plan_view;
 mod raster;
 mod style;
 mod values;
@@ -16,6 +17,8 @@ pub use data::{
 };
 pub use hops::draw_hop_map;
 pub use landings::draw_landing_map;
+pub use plan_view::PlanView;
+pub(super) use plan_view::draw_plan_view;
 pub use style::RasterStyle;
 pub use values::draw_value_map;
 

@@ -55,6 +55,11 @@ const LEAST_TURN_DEG: f64 = 0.5;
 impl MapPanel {
     /// Lays out a window of a DEM below a height of the sheet, with the same scale on both axes.
     pub(super) fn new(dem: &Dem, window: &Window, top_mm: f64) -> Self {
+        Self::at_most(dem, window, top_mm, TALL_MM)
+    }
+
+    /// The same with another greatest height.
+    pub(super) fn at_most(dem: &Dem, window: &Window, top_mm: f64, tall_mm: f64) -> Self {
         let map = dem.georeference();
         let first = map.post(window.rows.start, window.cols.start);
         let last = map.post(window.rows.end.saturating_sub(1), window.cols.end.saturating_sub(1));
@@ -62,8 +67,8 @@ impl MapPanel {
         let (x, y) = (0.5 * map.dx_m(), 0.5 * map.dy_m());
         let bounds = MapBounds { min: MapPoint::new(first.x - x, last.y - y), max: MapPoint::new(last.x + x, first.y + y) };
         let (wide_m, high_m) = (bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y);
-        let left = LEFT_MM.max(1.0 + left_room_mm(&Ticks::round(bounds.min.y, bounds.max.y, TALL_MM / TICK_MM)));
-        let mm_per_m = ((RIGHT_MM - left) / wide_m).min(TALL_MM / high_m);
+        let left = LEFT_MM.max(1.0 + left_room_mm(&Ticks::round(bounds.min.y, bounds.max.y, tall_mm / TICK_MM)));
+        let mm_per_m = ((RIGHT_MM - left) / wide_m).min(tall_mm / high_m);
         let left = left + 0.5 * (RIGHT_MM - left - wide_m * mm_per_m);
         let top = top_mm + STRIP_MM;
         let panel = Panel { left, top, right: left + wide_m * mm_per_m, bottom: top + high_m * mm_per_m };
@@ -161,8 +166,8 @@ impl MapPanel {
         }
     }
 
-    /// Starts and goals over the paths, and their labels over everything but markers.
-    pub(super) fn ends(&self, sheet: &mut Sheet, starts: &[MapPoint], goals: &[GoalMark], paths: &[Vec<MapPoint>]) {
+    /// Starts and goals over the paths, and their labels over everything but markers; returns what further labels have to spare.
+    pub(super) fn ends(&self, sheet: &mut Sheet, starts: &[MapPoint], goals: &[GoalMark], paths: &[Vec<MapPoint>]) -> Taken {
         let seen_starts: Vec<_> = (1..).zip(starts.iter().copied()).filter(|&(_, at)| self.shows(at)).collect();
         let seen: Vec<_> = goals.iter().enumerate().filter(|(_, goal)| self.shows(goal.at)).collect();
         let mut taken = Taken::default();
@@ -189,6 +194,7 @@ impl MapPanel {
             };
             self.name(sheet, goal.at, &text, &mut taken);
         }
+        taken
     }
 
     /// A label for the marker at a position, if there is room.
