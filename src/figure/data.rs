@@ -208,7 +208,11 @@ impl FigureData {
             goal: input.goal.point,
             subject,
             prepares: input.test.hopper().limits().preparation_time_s.is_some(),
-            along: if input.plan_view.is_some() { "route" } else { "chain" },
+            along: match (&input.plan_view, input.path) {
+                (None, _) => "chain",
+                (Some(_), Some(_)) => "route",
+                (Some(_), None) => "straight line",
+            },
         })
     }
 

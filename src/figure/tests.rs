@@ -457,7 +457,12 @@ fn a_route_is_drawn_from_above_below_its_profile() {
             let texts = samples::texts(&picture);
             let words = match found {
                 true => ["path and its landings", "goal, reached", "map y, north (m)", "distance along the route"],
-                false => ["reached place nearest to the goal", "goal, not reached", "not reached over", "distance along the route"],
+                false => [
+                    "reached place nearest to the goal",
+                    "goal, not reached",
+                    "not reached over",
+                    "distance along the straight line",
+                ],
             };
             for words in words {
                 assert!(texts.contains(words), "{words:?} is missing in {texts}");

@@ -245,7 +245,7 @@ pub struct UnmetBudget {
 /// The result of a search on a chain by an objective, within budgets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChainSearched {
-    /// The answer; its path is the best within the budgets, and if there is none, the best without them.
+    /// The answer; its path is the best within the budgets, or the best without budgets, if no path keeps them.
     pub answer: Answer,
     /// What that path takes; `None` without a path.
     pub totals: Option<Amounts>,

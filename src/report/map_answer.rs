@@ -261,12 +261,12 @@ impl MapAnswer {
         );
         // Writing to a String cannot fail.
         if let [start] = &self.starts[..] {
-            let _ = writeln!(text, "start: {:.3} m from the place asked for; {beside}", start.offset_m);
+            let _ = writeln!(text, "start: {:.3} m from the given place; {beside}", start.offset_m);
         } else {
             for (number, StartRecord { x_m, y_m, offset_m, nearest_posts }) in (1..).zip(&self.starts) {
                 let _ = writeln!(
                     text,
-                    "start {number} ({x_m:.3}, {y_m:.3}) m, {offset_m:.3} m from the place asked for: nearest to {nearest_posts} post{}",
+                    "start {number} ({x_m:.3}, {y_m:.3}) m, {offset_m:.3} m from the given place: nearest to {nearest_posts} post{}",
                     if *nearest_posts == 1 { "" } else { "s" }
                 );
             }
@@ -341,11 +341,8 @@ impl MapAnswer {
             Some(None) => ", no path back".to_owned(),
             None => String::new(),
         };
-        let _ = writeln!(
-            text,
-            "goal ({:.3}, {:.3}) m, {:.3} m from the place asked for: {hops}{back}",
-            goal.x_m, goal.y_m, goal.offset_m
-        );
+        let _ =
+            writeln!(text, "goal ({:.3}, {:.3}) m, {:.3} m from the given place: {hops}{back}", goal.x_m, goal.y_m, goal.offset_m);
         if let Some(lower) = goal.hops_lower_bound.filter(|_| goal.hops.is_some() || goal.searched) {
             let _ = writeln!(text, "  {}", hops_bound(goal.hops.map(i16::unsigned_abs).map(u64::from), lower));
         }

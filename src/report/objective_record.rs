@@ -41,7 +41,7 @@ pub struct BudgetRecord {
     pub key: String,
     /// The greatest total, in the unit of the amount.
     pub max: f64,
-    /// What the path takes: the best by the objective within all budgets, or if there is none, the best without them; null without a path.
+    /// What the path takes: the best by the objective within all budgets, or the best without budgets, if no path keeps them; null without a path.
     pub total: Option<f64>,
     /// Whether the path keeps it.
     pub met: bool,

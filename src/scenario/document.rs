@@ -197,7 +197,7 @@ fn search(scenario: &Scenario) -> Value {
         ("points_per_segment", points),
         ("node_spacing_max_m", spacing),
         ("effort", scenario.objective.is_none().then(|| search.effort.name().into())),
-        // A search over several commands is told by the absence of one.
+        // Without one, the search is over several commands.
         ("takeoff_angle", (scenario.commands == SearchedCommands::Chosen).then(|| search.takeoff.name().into())),
         ("split", Some(search.split.name().into())),
         ("risk", Some(scenario.risk.name().into())),
