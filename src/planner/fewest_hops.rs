@@ -1,9 +1,12 @@
 //! The fewest hops from every node of a DEM to the goal, or from the start to every node: breadth first, level by level.
 
+use std::{cmp::Reverse, collections::BinaryHeap};
+
 use rayon::prelude::*;
 
 use super::{
     SurfaceNode,
+    beside::{cells_beside, holds},
     surface_hops::{Side, SurfaceHops},
 };
 use crate::{
@@ -14,9 +17,6 @@ use crate::{
 
 /// No hops are known.
 const UNKNOWN: u32 = u32::MAX;
-
-/// A node that is looked at.
-const ASKED: u32 = u32::MAX - 1;
 
 /// The fewest hops of nodes, from one end.
 #[derive(Clone, Debug)]
@@ -56,8 +56,9 @@ fn distance_m(at: MapPoint, [from, to]: [MapPoint; 2]) -> f64 {
     (away - along * share).norm()
 }
 
-/// Space of one thread: the nodes of the level before that are within reach, by distance.
-type Near = Vec<(f64, SurfaceNode, MapPosition)>;
+/// Space of one thread: the nodes of the level before that are within reach, by the bits of their distance squared, which are in the order
+/// of the distances.
+type Near = Vec<Reverse<(u64, SurfaceNode)>>;
 
 impl FewestHops {
     /// Searches from one end.
@@ -80,15 +81,15 @@ impl FewestHops {
         let mut found = Self { hops: vec![UNKNOWN; surface.nodes.count()], known: 1, pairs: 0 };
         found.hops[end.index()] = 0;
         let mut level = vec![end];
-        for hops in 1..ASKED {
+        for hops in 1..UNKNOWN {
             let is_done = within.until.is_some_and(|until| found.hops[until.index()] != UNKNOWN);
             if level.is_empty() || is_done || u64::from(hops) > within.most {
                 break;
             }
             meter.check()?;
-            let asked = found.beside(surface, side, &level, |at| within.holds(at, hops));
+            let asked = found.beside(surface, side, &level);
             let evaluate = |(counter, near): &mut (_, Near), node: &SurfaceNode| {
-                found.is_reached(surface, side, (*node, hops - 1), counter, near)
+                found.is_reached(surface, side, (within, *node, hops - 1), counter, near)
             };
             let begin = || (meter.counter(), Near::new());
             let reached: Vec<(bool, u64)> =
@@ -96,8 +97,8 @@ impl FewestHops {
             level.clear();
             for (node, (is_reached, pairs)) in asked.into_iter().zip(reached) {
                 found.pairs += pairs;
-                found.hops[node.index()] = if is_reached { hops } else { UNKNOWN };
                 if is_reached {
+                    found.hops[node.index()] = hops;
                     level.push(node);
                 }
             }
@@ -118,31 +119,19 @@ impl FewestHops {
         self.hops.iter().enumerate().filter_map(known)
     }
 
-    /// The nodes without hops within reach of a level, each once, marked as asked.
-    fn beside(
-        &mut self,
-        surface: &SurfaceHops<'_>,
-        side: Side,
-        level: &[SurfaceNode],
-        holds: impl Fn(&MapPosition) -> bool,
-    ) -> Vec<SurfaceNode> {
-        let mut asked = Vec::new();
-        let mut outside = Vec::new();
-        for at in level.iter().filter_map(|node| surface.position(*node)) {
-            for node in surface.about(&at, side) {
-                let hops = &mut self.hops[node.index()];
-                if *hops != UNKNOWN {
-                    continue;
-                }
-                *hops = ASKED;
-                let is_asked = surface.position(node).is_some_and(|at| holds(&at));
-                if is_asked { asked.push(node) } else { outside.push(node) }
-            }
-        }
-        for node in outside {
-            self.hops[node.index()] = UNKNOWN;
-        }
-        asked
+    /// The nodes without hops that may be within reach of a level, each once.
+    fn beside(&self, surface: &SurfaceHops<'_>, side: Side, level: &[SurfaceNode]) -> Vec<SurfaceNode> {
+        let (nodes, lattice) = (surface.nodes, surface.nodes.lattice());
+        let reaches_m = level.iter().filter_map(|node| surface.position(*node)).map(|at| surface.reach_m(&at, side));
+        let (down, aside) = lattice.cells_within(reaches_m.fold(0.0, f64::max));
+        let mut cells: Vec<_> = level.iter().map(|node| nodes.cell(*node)).collect();
+        cells.sort_unstable();
+        let near = cells_beside(&cells, lattice.size(), (down + 1, aside + 1));
+        let of_lattice = near.iter().flat_map(|(row, ranges)| {
+            ranges.iter().flat_map(move |cols| cols.clone().map(move |col| SurfaceNode::of_lattice(lattice, (col, *row))))
+        });
+        let beside = nodes.single_places().filter(|(_, at)| holds(&near, lattice.cell_near(*at))).map(|(node, _)| node);
+        of_lattice.chain(beside).filter(|node| self.hops[node.index()] == UNKNOWN).collect()
     }
 
     /// Whether a feasible hop joins a node to one with so many hops, and how many were computed.
@@ -150,11 +139,11 @@ impl FewestHops {
         &self,
         surface: &SurfaceHops<'_>,
         side: Side,
-        (node, hops): (SurfaceNode, u32),
+        (within, node, hops): (&Within<'_>, SurfaceNode, u32),
         counter: &mut crate::progress::PairCounter<'_>,
         near: &mut Near,
     ) -> Result<(bool, u64), Cancelled> {
-        let Some(at) = surface.position(node) else { return Ok((false, 0)) };
+        let Some(at) = surface.position(node).filter(|at| within.holds(at, hops + 1)) else { return Ok((false, 0)) };
         let (mut pairs, other) = (
             0,
             match side {
@@ -162,24 +151,27 @@ impl FewestHops {
                 Side::Goal => Side::Start,
             },
         );
-        near.clear();
+        let mut waiting = std::mem::take(near);
         for known in surface.about(&at, other).filter(|known| self.hops[known.index()] == hops) {
-            near.extend(surface.position(known).map(|there| ((there.at - at.at).norm_squared(), known, there)));
+            let away2 = surface.nodes.map_point(known).map(|there| (there - at.at).norm_squared());
+            waiting.extend(away2.map(|away2| Reverse((away2.to_bits(), known))));
         }
         // The shortest hop is the most likely one.
-        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for (_, known, there) in near.iter() {
+        let mut waiting = BinaryHeap::from(waiting);
+        let mut is_reached = false;
+        while let Some(Reverse((_, known))) = waiting.pop().filter(|_| !is_reached) {
+            let Some(there) = surface.position(known) else { continue };
             let (nodes, ends) = match side {
-                Side::Start => ([*known, node], [there, &at]),
-                Side::Goal => ([node, *known], [&at, there]),
+                Side::Start => ([known, node], [&there, &at]),
+                Side::Goal => ([node, known], [&at, &there]),
             };
             let Some(sight) = surface.sight(ends[0], ends[1]) else { continue };
             pairs += 1;
             counter.pair()?;
-            if surface.between(nodes, ends, sight).is_some() {
-                return Ok((true, pairs));
-            }
+            is_reached = surface.between(nodes, ends, sight).is_some();
         }
-        Ok((false, pairs))
+        *near = waiting.into_vec();
+        near.clear();
+        Ok((is_reached, pairs))
     }
 }

@@ -14,6 +14,7 @@
 //! two nodes and the hop test along it find ([`HopTest`](crate::hop::HopTest)).
 
 mod amount;
+mod beside;
 mod bounds;
 mod budget;
 mod chain_legs;

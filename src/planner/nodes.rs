@@ -19,6 +19,12 @@ const NEARLY_ALONG: f64 = 1e-6;
 pub struct SurfaceNode(pub(super) u32);
 
 impl SurfaceNode {
+    /// That of a column and a row of the lattice.
+    #[expect(clippy::cast_possible_truncation, reason = "at most MOST")]
+    pub(super) const fn of_lattice(lattice: &SurfaceLattice, (i, j): (usize, usize)) -> Self {
+        Self(lattice.index(i, j) as u32)
+    }
+
     pub(super) const fn index(self) -> usize {
         self.0 as usize
     }
@@ -97,6 +103,32 @@ impl SurfaceNodes {
     pub fn place(&self, at: MapPoint) -> Option<SurfaceNode> {
         let index = self.places.iter().position(|place| place.at == at)?;
         u32::try_from(self.lattice.count() + index).ok().map(SurfaceNode)
+    }
+
+    /// The single places.
+    pub(super) fn single_places(&self) -> impl Iterator<Item = (SurfaceNode, MapPoint)> + '_ {
+        #[expect(clippy::cast_possible_truncation, reason = "at most MOST")]
+        let numbered = |(number, place): (usize, &MapPosition)| (SurfaceNode(number as u32), place.at);
+        (self.lattice.count()..).zip(&self.places).map(numbered)
+    }
+
+    /// The row and column of a node in the lattice, of a single place those of a node near to it.
+    pub(super) fn cell(&self, node: SurfaceNode) -> (usize, usize) {
+        match node.index().checked_sub(self.lattice.count()).and_then(|place| self.places.get(place)) {
+            Some(place) => self.lattice.cell_near(place.at),
+            None => {
+                let (i, j) = self.lattice.node(node.index());
+                (j, i)
+            }
+        }
+    }
+
+    /// Where a node lies on the map.
+    pub(super) fn map_point(&self, node: SurfaceNode) -> Option<MapPoint> {
+        match node.index().checked_sub(self.lattice.count()) {
+            Some(place) => self.places.get(place).map(|place| place.at),
+            None => Some(self.lattice.at(self.lattice.node(node.index()))),
+        }
     }
 
     /// A node on the ground; `None` without elevation.
