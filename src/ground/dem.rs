@@ -6,6 +6,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::{
     Around, ContactPoint, Element, Facet, Frame, Hold, NodeLattice, Realization, Side, Surface, TakeoffWindows, Windows,
+    excluded::{GreatestSpeeds, slopes_ahead},
     posts::Standing,
 };
 use crate::{
@@ -47,6 +48,7 @@ const ON_THE_LINE: f64 = 1.0e-9;
 pub struct DemGround {
     terrain: OverlaidDem,
     envelope: FlightEnvelope,
+    speeds: GreatestSpeeds,
     surface: SurfaceProperties,
     height_rounding_m: f64,
     position_rounding_m: f64,
@@ -103,6 +105,10 @@ impl DemGround {
             resolution_m: 4.0 * (ON_THE_LINE * step_m).max(position_rounding_m),
             aside_posts: 4.0 * ON_THE_LINE.max(position_rounding_m / step_m),
             envelope: FlightEnvelope::new(hopper, gravity),
+            speeds: GreatestSpeeds::new(
+                (hopper.limits().takeoff_speed_max_m_s, hopper.limits().landing_speed_max_m_s),
+                gravity.m_s2(),
+            ),
             surface: *surface,
             realization: Realization::default(),
             footprint: Footprint::of(hopper).map(|footprint| (footprint, Arc::new(Surroundings::whole(terrain.shared_dem())))),
@@ -259,6 +265,18 @@ impl DemGround {
         self.constraints(gradient, heading, beside).ok()?.allowed(contact, Direction::Forward).copied()
     }
 
+    /// Whether friction at both contacts and the greatest speeds exclude every arc, by a test far cheaper than the exact limits.
+    fn are_arcs_excluded(&self, [from, to]: [(Gradient, MapPoint); 2], sight: LineOfSight, heading: Vector2<f64>) -> bool {
+        // With brakes the end of the arc is no landing.
+        if self.hopper().limits().landing.brakes() {
+            return false;
+        }
+        let (Some(under), Some(over)) = (self.nominal_friction(from.1), self.nominal_friction(to.1)) else { return false };
+        let takeoff = slopes_ahead(from.0, heading, under.coefficient());
+        let landing = slopes_ahead(to.0, -heading, over.coefficient());
+        takeoff.zip(landing).is_none_or(|(takeoff, landing)| self.speeds.exclude(sight, takeoff, landing))
+    }
+
     /// The feasible lofts of one hop by a walk over the triangles, without a slice (replanning asks for them many times); `None` if
     /// the hop is infeasible.
     ///
@@ -274,8 +292,12 @@ impl DemGround {
         let triangles = self.triangles();
         let nominal = triangles.nominal();
         let (ahead, before) = (from.at + heading * BESIDE_M, to.at - heading * BESIDE_M);
-        let takeoff = self.allowed(triangles.at(ahead, nominal)?.1, heading, ahead, Contact::Takeoff)?;
-        let landing = self.allowed(triangles.at(before, nominal)?.1, heading, before, Contact::Landing)?;
+        let (from_gradient, to_gradient) = (triangles.at(ahead, nominal)?.1, triangles.at(before, nominal)?.1);
+        if self.are_arcs_excluded([(from_gradient, ahead), (to_gradient, before)], sight, heading) {
+            return None;
+        }
+        let takeoff = self.allowed(from_gradient, heading, ahead, Contact::Takeoff)?;
+        let landing = self.allowed(to_gradient, heading, before, Contact::Landing)?;
         let mut lofts = self.envelope.lofts(sight, takeoff.contact_limits(), landing.contact_limits());
         if lofts.is_empty() || lofts.upper <= 0.0 || self.refuses_footprint(from, ahead) || self.refuses_footprint(to, before) {
             return None;

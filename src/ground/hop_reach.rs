@@ -18,6 +18,8 @@ pub(crate) struct HopReach {
     gravity_m_s2: f64,
     /// The lowest elevation of the DEM, m.
     lowest_m: f64,
+    /// The highest one, m.
+    highest_m: f64,
 }
 
 impl HopReach {
@@ -25,11 +27,13 @@ impl HopReach {
     pub(crate) fn of(ground: &DemGround) -> Self {
         let limits = ground.hopper().limits();
         let squared = |speed_m_s: f64| tolerant_speed_m_s(speed_m_s) * tolerant_speed_m_s(speed_m_s) * (1.0 + SPEED_TOLERANCE);
+        let (lowest_m, highest_m) = ground.terrain().dem().elevation_range_m();
         Self {
             takeoff_squared: squared(limits.takeoff_speed_max_m_s),
             landing_squared: squared(limits.arc_landing_speed_max_m_s()),
             gravity_m_s2: ground.gravity_m_s2(),
-            lowest_m: ground.terrain().dem().elevation_range_m().0,
+            lowest_m,
+            highest_m,
         }
     }
 
@@ -48,7 +52,17 @@ impl HopReach {
     /// With C the length of the line of sight and Z its rise, `g (C + Z) <= v_t^2` and `g (C - Z) <= v_l^2` (see
     /// [`LineOfSight::min_speed_ratio`]), so that `2 g C <= v_t^2 + v_l^2`; and no hop goes farther than one down to the lowest ground.
     pub(crate) fn run_m(&self, from: &MapPosition) -> f64 {
-        let down_m = safety_range_m((from.z_m - self.lowest_m).max(0.0), self.takeoff_squared.sqrt(), self.gravity_m_s2);
+        self.run_over_m(from.z_m - self.lowest_m)
+    }
+
+    /// The same for hops to a position.
+    pub(crate) fn run_into_m(&self, to: &MapPosition) -> f64 {
+        self.run_over_m(self.highest_m - to.z_m)
+    }
+
+    /// The same for hops that fall by at most this height, m.
+    fn run_over_m(&self, fall_m: f64) -> f64 {
+        let down_m = safety_range_m(fall_m.max(0.0), self.takeoff_squared.sqrt(), self.gravity_m_s2);
         down_m.min((self.takeoff_squared + self.landing_squared) / (2.0 * self.gravity_m_s2))
     }
 

@@ -13,6 +13,7 @@ mod chain;
 mod chain_flight;
 mod dem;
 mod dem_flight;
+mod excluded;
 mod first_contact;
 mod height_field;
 mod hop_reach;

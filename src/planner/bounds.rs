@@ -1,7 +1,10 @@
 //! What no path to a place takes less of.
 
 use super::{Amount, Amounts};
-use crate::{ballistics::PathBounds, world::HopperLimits};
+use crate::{
+    ballistics::{LineOfSight, PathBounds},
+    world::HopperLimits,
+};
 
 /// Lower bounds on the amounts of every path of hops over a straight line, from its length and its climb alone: those of
 /// [`PathBounds`], with what preparations, settling and overheads add for every hop.
@@ -11,8 +14,12 @@ use crate::{ballistics::PathBounds, world::HopperLimits};
 pub struct LeastAmounts {
     /// `None` where nothing hops.
     bounds: Option<PathBounds>,
+    gravity_m_s2: f64,
     limits: HopperLimits,
 }
+
+/// Rounding errors are far smaller than this share.
+const SHAVED: f64 = 1.0 - 1e-9;
 
 impl LeastAmounts {
     /// Bounds for a hopper.
@@ -26,7 +33,7 @@ impl LeastAmounts {
         // Sums of many hops round: speeds count with ten times the tolerance of their limits.
         let [takeoff_m_s, landing_m_s] = [takeoff_m_s, landing_m_s.min(fallen_m_s)].map(|speed| speed * (1.0 + 1e-8));
         let hops = takeoff_m_s > 0.0 && landing_m_s > 0.0;
-        Self { bounds: hops.then(|| PathBounds::new(takeoff_m_s, landing_m_s, gravity_m_s2)), limits: *limits }
+        Self { bounds: hops.then(|| PathBounds::new(takeoff_m_s, landing_m_s, gravity_m_s2)), gravity_m_s2, limits: *limits }
     }
 
     /// The bounds for a way that is so long horizontally and climbs so far, m.
@@ -39,13 +46,17 @@ impl LeastAmounts {
     /// assert_eq!(least.of(Amount::Hops), 3.0);
     /// assert!((least.of(Amount::Energy) - 125.0).abs() < 1e-5);
     /// ```
-    #[expect(clippy::cast_precision_loss, reason = "a bound on hops may be less")]
     pub fn over(&self, run_m: f64, climb_m: f64) -> Amounts {
-        const SHAVED: f64 = 1.0 - 1e-9;
+        self.over_in(run_m, climb_m, 0)
+    }
+
+    /// The same for a way that is known to take so many hops at least.
+    #[expect(clippy::cast_precision_loss, reason = "a bound on hops may be less")]
+    pub fn over_in(&self, run_m: f64, climb_m: f64, hops_min: u64) -> Amounts {
         let straight_m = libm::hypot(run_m, climb_m);
         let Some(bounds) = self.bounds.as_ref().filter(|_| straight_m > 0.0) else { return Amounts::NONE };
         let limits = &self.limits;
-        let hops = bounds.hops(run_m, climb_m).map_or(0.0, |hops| hops as f64);
+        let hops = bounds.hops(run_m, climb_m).unwrap_or(0).max(hops_min) as f64;
         let speeds_m_s = bounds.takeoff_speeds_m_s(run_m, climb_m);
         let flight_s = bounds.flight_time_s(run_m, climb_m);
         let kinetic_j_kg = bounds.energy_j_kg(run_m, climb_m);
@@ -60,5 +71,23 @@ impl LeastAmounts {
             .with(Amount::MissionTime, flight_s + waits_s * SHAVED)
             .with(Amount::Distance, run_m * SHAVED)
             .with(Amount::ArcLength, straight_m * SHAVED)
+    }
+    /// The bounds for one hop over a line of sight, whose least take-off speed is exact.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{ballistics::LineOfSight, planner::{Amount, LeastAmounts}, world::HopperLimits};
+    /// // 8.1 m over flat ground at 10 m/s^2 take 9 m/s, however fast the machine may be.
+    /// let least = LeastAmounts::new(&HopperLimits::with_speeds(20.0, 20.0), 10.0, (20.0, 20.0), 0.0).of_hop(LineOfSight::new(8.1, 0.0));
+    /// assert!((least.of(Amount::TakeoffSpeed) - 9.0).abs() < 1e-7 && least.of(Amount::Hops) == 1.0);
+    /// ```
+    pub fn of_hop(&self, sight: LineOfSight) -> Amounts {
+        let limits = &self.limits;
+        let speed_m_s = (self.gravity_m_s2 * sight.run_m() * sight.min_speed_ratio()).sqrt() * SHAVED;
+        self.over_in(sight.run_m(), sight.rise_m(), 1)
+            .with(Amount::TakeoffSpeed, speed_m_s)
+            .with(Amount::PeakSpeed, speed_m_s)
+            .with(Amount::DeltaV, speed_m_s + limits.hop_delta_v_overhead_m_s.unwrap_or(0.0) * SHAVED)
+            .with(Amount::Energy, limits.store_energy_j_kg(0.5 * speed_m_s * speed_m_s, 1) * SHAVED)
     }
 }

@@ -3,8 +3,8 @@
 use std::cell::RefCell;
 
 use super::{
-    Amount, Amounts, Budgets, FoundPath, LabelCap, LeastAmounts, LegGraph, Objective, OverBudget, Successor, front,
-    search::{least_total, search},
+    Amount, Amounts, Budgets, FoundPath, LabelCap, LeastAmounts, LegGraph, LegVisitor, Objective, Successor, UnmetBudget, front,
+    search::{search, without_budgets},
 };
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
@@ -30,7 +30,7 @@ pub enum SearchedCommands {
 
 impl SearchedCommands {
     /// The choices of a single hop.
-    fn choices(self, chosen: TakeoffChoice, by_risk: bool) -> Vec<TakeoffChoice> {
+    pub(super) fn choices(self, chosen: TakeoffChoice, by_risk: bool) -> Vec<TakeoffChoice> {
         match self {
             Self::Chosen => vec![chosen],
             Self::Distinct => {
@@ -176,24 +176,28 @@ impl LegGraph for ChainLegs<'_> {
         self.graph.nodes().stations().len()
     }
 
-    fn successors(&self, node: usize, visit: &mut dyn FnMut(&Successor)) -> Result<(), Cancelled> {
+    fn successors(&self, node: usize, visitor: &mut dyn LegVisitor) -> Result<(), Cancelled> {
         let (test, limits) = (self.graph.test(), self.graph.test().hopper().limits());
         let takeoff = self.station(node);
         let is_first = node == self.ends().0;
         for target in self.graph.landings(takeoff).filter(|target| *target != node) {
-            self.counter.borrow_mut().pair()?;
             let landing = self.station(target);
+            let (from, to) = (takeoff.point, landing.point);
+            if !visitor.wants(target, &self.least.over((to.x_m - from.x_m).abs(), to.z_m - from.z_m)) {
+                continue;
+            }
+            self.counter.borrow_mut().pair()?;
             match self.graph.edge(takeoff, landing) {
                 Err(_) => {}
                 Ok(Edge::Along(along)) => {
-                    visit(&Successor { node: target, command: 0, amounts: self.along(&along, (node, target)) });
+                    visitor.visit(&Successor { node: target, command: 0, amounts: self.along(&along, (node, target)) });
                 }
                 Ok(Edge::Hop(lofts)) => {
                     let Some(sight) = test.line_of_sight(takeoff, landing) else { continue };
                     self.arcs((node, target), (sight, lofts), |command, loft, risk| {
                         let arc = Arc::new(sight, loft, test.gravity_m_s2());
                         let amounts = Amounts::of_arc(&arc, limits, is_first).with(Amount::Risk, risk);
-                        visit(&Successor { node: target, command, amounts });
+                        visitor.visit(&Successor { node: target, command, amounts });
                     });
                 }
             }
@@ -231,15 +235,6 @@ pub struct ChainPath {
     pub cost: Cost,
     /// What it takes.
     pub totals: Amounts,
-}
-
-/// A budget that the best path without budgets does not keep.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UnmetBudget {
-    /// By how much that path exceeds it.
-    pub over: OverBudget,
-    /// The least total of this amount over all paths.
-    pub least: f64,
 }
 
 /// The result of a search on a chain by an objective, within budgets.
@@ -296,12 +291,8 @@ pub fn search_on_chain(
             continue;
         }
         // No path keeps the budgets: what the best one takes, and the least of what it takes too much of.
-        let Some(best) = search(&legs, legs.ends(), question.objective, &Budgets::NONE, question.cap)?.path else { break };
-        let mut unmet = Vec::new();
-        for over in question.budgets.exceeded_by(&best.totals) {
-            let least = least_total(&legs, legs.ends(), over.amount, question.cap)?.unwrap_or(over.total);
-            unmet.push(UnmetBudget { over, least });
-        }
+        let without = without_budgets(&legs, legs.ends(), question.objective, question.budgets, question.cap)?;
+        let Some((best, unmet)) = without else { break };
         let path = legs.on_chain(&best);
         answer.outcome = Outcome::Path { legs: path.legs, cost: path.cost };
         return Ok(ChainSearched { answer, totals: Some(path.totals), within: false, unmet, capped });

@@ -1,33 +1,53 @@
-//! The fewest hops from a start to a goal over nodes on a DEM, then the least effort, found towards the goal.
+//! The best path from a start to a goal over nodes on a DEM, found towards the goal.
 //!
-//! A* with the bounds that no path can beat ([`PathBounds`]): consistent, so that the first label of the goal that is taken is the least.
+//! First the fewest hops of nodes to the goal, level by level ([`FewestHops`]): no path needs fewer, which is a bound for the search by the
+//! objective ([`search`]), the best there is where hops come first. That search then looks at hops of paths of the fewest hops alone.
 
-use std::{
-    cmp::Reverse,
-    collections::{BinaryHeap, HashSet},
+use super::{
+    Amount, Amounts, Budgets, FoundPath, LabelCap, Objective, SearchedCommands, SurfaceNode, SurfaceNodes, TooManyNodes,
+    UnmetBudget,
+    fewest_hops::{FewestHops, Within},
+    front,
+    route_gap::RouteGap,
+    search::{search, without_budgets},
+    surface_hops::{Side, SurfaceHops},
+    surface_legs::{Counted, SurfaceLegs},
 };
-
-use super::{SurfaceNode, SurfaceNodes, TooManyNodes};
 use crate::{
-    ballistics::{Arc, LineOfSight, PathBounds, TakeoffChoice, safety_range_m},
+    ballistics::{PathBounds, TakeoffChoice},
+    flight::Uncertainty,
     graph::{Cost, Effort},
     ground::{DemGround, MapPosition, Surface},
-    hop::HopTest,
     progress::{Cancelled, Meter, Progress, Stage},
-    quantity::{MapPoint, SlopeInterval, VertexId},
+    quantity::MapPoint,
 };
 
-/// What a route is for: its ends, and what is minimised after the number of hops.
+/// What a route is for: its ends, and how its hops are counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RouteGoal {
     /// Where it begins: a single place of the nodes.
     pub start: MapPoint,
     /// Where it ends: a single place of the nodes.
     pub goal: MapPoint,
-    /// The second criterion, after the number of hops.
+    /// The effort of its cost.
     pub effort: Effort,
-    /// Which of the feasible take-off angles each hop has.
+    /// Which of the feasible take-off angles each hop has, where an edge offers no others.
     pub takeoff: TakeoffChoice,
+}
+
+/// What a route is searched for.
+#[derive(Clone, Copy, Debug)]
+pub struct RouteQuestion<'a> {
+    /// What is to be least.
+    pub objective: &'a Objective,
+    /// The greatest totals.
+    pub budgets: &'a Budgets,
+    /// The commands of an edge.
+    pub commands: SearchedCommands,
+    /// The errors by which risk is judged, and the ground over which they are flown; needed where the objective is about risk.
+    pub errors: Option<(&'a Uncertainty, &'a DemGround)>,
+    /// How many labels are kept.
+    pub cap: LabelCap,
 }
 
 /// Why there is no answer.
@@ -45,217 +65,303 @@ pub enum RouteError {
     Cancelled(#[from] Cancelled),
 }
 
+/// A path over a DEM.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoutePath {
+    /// The places from start to goal, one hop from each to the next.
+    pub places: Vec<MapPosition>,
+    /// The choice of take-off angle of each hop.
+    pub choices: Vec<TakeoffChoice>,
+    /// Its hops, and its effort.
+    pub cost: Cost,
+    /// What it takes.
+    pub totals: Amounts,
+}
+
+/// The work of a search.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RouteWork {
+    /// Pairs of nodes whose hop was computed.
+    pub pairs_tested: u64,
+    /// Nodes with known fewest hops to the goal.
+    pub leading: usize,
+    /// Nodes that the search by the objective reached, the start included; without a path all that the start reaches.
+    pub reached: usize,
+    /// Labels whose legs were visited.
+    pub settled: usize,
+}
+
 /// The result of a search, and its work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeRoute {
-    /// The places from start to goal, one hop from each to the next; `None` if the goal was not reached over these nodes.
-    pub places: Option<Vec<MapPosition>>,
-    /// Its hops and effort; those of no hops without a path.
-    pub cost: Cost,
-    /// Pairs of nodes whose hop was computed.
-    pub pairs_tested: u64,
-    /// Nodes reached, the start included.
-    pub reached: usize,
+    /// The best path within the budgets, and if there is none, the best without them; `None` if the goal was not reached over these nodes.
+    pub path: Option<RoutePath>,
+    /// Whether it keeps the budgets.
+    pub within: bool,
+    /// If not: those that it exceeds. If the least of each is within it, no path keeps all of them at once.
+    pub unmet: Vec<UnmetBudget>,
+    /// Whether labels were left out: the path may then not be the best, and that none keeps the budgets is not certain.
+    pub capped: bool,
     /// The reached place nearest to the goal, horizontally.
     pub nearest: MapPosition,
+    /// Without a path: what lies between the places reached and those that lead to the goal.
+    pub gap: Option<RouteGap>,
+    /// The work.
+    pub work: RouteWork,
 }
 
-/// The best path to a node so far.
-#[derive(Clone, Copy, Debug)]
-struct Label {
-    cost: Cost,
-    from: u32,
-}
-
-/// The nodes, the hops between them, and what is minimised.
-struct Search<'s> {
-    ground: &'s DemGround,
-    nodes: &'s SurfaceNodes,
-    question: &'s RouteGoal,
-    goal: MapPosition,
-    bounds: PathBounds,
-    gravity_m_s2: f64,
-    takeoff_max_m_s: f64,
-    /// Half of the sum of the squares of both greatest speeds over gravity: no hop is longer.
-    span_max_m: f64,
-    lowest_m: f64,
-}
-
-/// Finds the path of fewest hops from a start to a goal over nodes on a DEM, then of least effort.
+/// Finds the path of fewest hops from a start to a goal over nodes on a DEM, then of least effort: as [`free_route_by`] with one command a
+/// hop and no budgets.
 ///
-/// The machine is taken to fly any command up to its greatest. Equal costs leave the path that was found first; the answer depends on the
-/// question alone.
+/// # Errors
+/// [`RouteError`].
+pub fn free_route(
+    ground: &DemGround,
+    nodes: &SurfaceNodes,
+    goal: &RouteGoal,
+    progress: &dyn Progress,
+) -> Result<FreeRoute, RouteError> {
+    let objective = Objective::hops_then(goal.effort);
+    let question = RouteQuestion {
+        objective: &objective,
+        budgets: &Budgets::NONE,
+        commands: SearchedCommands::Chosen,
+        errors: None,
+        cap: LabelCap::default(),
+    };
+    free_route_by(ground, nodes, goal, &question, progress)
+}
+
+/// Finds the best path from a start to a goal over nodes on a DEM by an objective, within budgets.
+///
+/// The machine is taken to fly any command up to its greatest. Of equal paths it returns one; which depends on the question alone. Risk is an
+/// estimate in closed form, as on maps.
 ///
 /// # Errors
 /// [`RouteError`].
 ///
 /// # Complexity
-/// 32 bytes for each node ([`bytes`](FreeRoute::bytes)), and some 56 for each label waiting. Only nodes towards the goal are expanded; each
-/// looks at all nodes within reach of one hop, and computes a hop where it may improve on what is known.
-pub fn free_route(
+/// [`bytes`](FreeRoute::bytes) for the nodes, and some 60 for each label. Where hops come first and no other amount has a budget, only nodes on
+/// paths of the fewest hops are expanded.
+pub fn free_route_by(
     ground: &DemGround,
     nodes: &SurfaceNodes,
-    question: &RouteGoal,
+    goal: &RouteGoal,
+    question: &RouteQuestion<'_>,
     progress: &dyn Progress,
 ) -> Result<FreeRoute, RouteError> {
-    let node = |at: MapPoint| {
-        let node = nodes.place(at).ok_or(RouteError::NoGround(at))?;
-        Ok::<_, RouteError>((node, nodes.position(ground, node).ok_or(RouteError::NoGround(at))?))
-    };
-    let (start, goal) = (node(question.start)?, node(question.goal)?);
-    let meter = Meter::new(progress, Stage::Search);
-    let search = Search::new(ground, nodes, question, goal.1);
-    let mut refused = HashSet::new();
-    let mut pairs_tested = 0;
+    let mut asked = Asked::new(ground, nodes, goal, progress)?;
     loop {
-        let mut found = search.run((start, goal.0), &refused, &meter)?;
-        pairs_tested += found.1.pairs_tested;
-        found.1.pairs_tested = pairs_tested;
+        let levels = asked.hops_left(asked.hops_within(question.budgets))?;
+        let Some(fewest) = levels.of(asked.start.0) else { return asked.not_found(&levels) };
+        let (route, hops) = asked.found(&levels, fewest, question)?;
         // The fast walk equals the slice up to rounding: a hop on the very edge of a limit may be one for the walk alone.
-        let wrong = found.0.windows(2).filter(|pair| !search.is_feasible([pair[0], pair[1]]));
-        let before = refused.len();
-        refused.extend(wrong.map(|pair| (pair[0], pair[1])));
-        if refused.len() == before {
-            return Ok(found.1);
+        if !asked.surface.refuse_wrong(hops) {
+            return Ok(route);
+        }
+    }
+}
+
+/// A front of routes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RouteFront {
+    /// The paths in ascending order of hops; none if the goal was not reached.
+    pub paths: Vec<RoutePath>,
+    /// The greatest number of hops that was allowed.
+    pub hops_max: u64,
+    /// Whether labels were left out.
+    pub capped: bool,
+}
+
+/// The Pareto front of hops against another amount over nodes on a DEM, within budgets. `hops_max`: how many hops count, given the fewest.
+///
+/// # Errors
+/// [`RouteError`].
+pub fn front_of_routes(
+    ground: &DemGround,
+    nodes: &SurfaceNodes,
+    goal: &RouteGoal,
+    (amount, question, hops_max): (Amount, &RouteQuestion<'_>, &dyn Fn(u64) -> u64),
+    progress: &dyn Progress,
+) -> Result<RouteFront, RouteError> {
+    let mut asked = Asked::new(ground, nodes, goal, progress)?;
+    loop {
+        let Some(fewest) = asked.hops_left(None)?.of(asked.start.0) else {
+            return Ok(RouteFront { paths: Vec::new(), hops_max: 0, capped: false });
+        };
+        let hops_max = hops_max(u64::from(fewest));
+        let levels = asked.hops_left(Some(hops_max))?;
+        #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
+        let budgets = question.budgets.with(Amount::Hops, hops_max as f64).unwrap_or(*question.budgets);
+        let legs = asked.legs((&levels, Counted::Known), question);
+        let (found, capped) = front(&legs, legs.ends(), (Amount::Hops, amount), &budgets, question.cap)?;
+        let paths = found.iter().map(|path| asked.path(&legs, path)).collect();
+        let hops: Vec<_> = found.iter().flat_map(SurfaceLegs::hops_of).collect();
+        drop(legs);
+        if !asked.surface.refuse_wrong(hops) {
+            return Ok(RouteFront { paths, hops_max, capped });
         }
     }
 }
 
 impl FreeRoute {
-    /// The bytes that a search over so many nodes takes at least.
+    /// The bytes that the nodes of a search take: the fewest hops, and the label; without a path those of both directions.
     pub const fn bytes(nodes: &SurfaceNodes) -> u64 {
-        (nodes.count() * size_of::<Label>()) as u64
+        8 * nodes.count() as u64
     }
 }
 
-impl<'s> Search<'s> {
-    fn new(ground: &'s DemGround, nodes: &'s SurfaceNodes, question: &'s RouteGoal, goal: MapPosition) -> Self {
-        let (limits, gravity_m_s2) = (ground.hopper().limits(), ground.gravity_m_s2());
-        let (takeoff_max_m_s, landing_max_m_s) = (limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s());
-        Self {
-            ground,
-            nodes,
-            question,
-            goal,
-            bounds: PathBounds::new(takeoff_max_m_s, landing_max_m_s, gravity_m_s2),
-            gravity_m_s2,
-            takeoff_max_m_s,
-            span_max_m: (takeoff_max_m_s * takeoff_max_m_s + landing_max_m_s * landing_max_m_s) / (2.0 * gravity_m_s2),
-            lowest_m: ground.terrain().dem().elevation_range_m().0,
-        }
-    }
+/// The hops over the nodes, and the ends of a question.
+struct Asked<'a> {
+    surface: SurfaceHops<'a>,
+    start: (SurfaceNode, MapPosition),
+    goal: (SurfaceNode, MapPosition),
+    how: &'a RouteGoal,
+    bounds: PathBounds,
+    meter: Meter<'a>,
+    /// Pairs of the searches before.
+    pairs: u64,
+}
 
-    /// What every path on from a position costs at least; `None` where there is none.
-    fn least_to_go(&self, from: &MapPosition) -> Option<Cost> {
-        let (run_m, climb_m) = (libm::hypot(self.goal.at.x - from.at.x, self.goal.at.y - from.at.y), self.goal.z_m - from.z_m);
-        let hops = self.bounds.hops(run_m, climb_m)?;
-        let effort = match self.question.effort {
-            Effort::TakeoffSpeed => self.bounds.takeoff_speeds_m_s(run_m, climb_m),
-            Effort::Energy => self.bounds.energy_j_kg(run_m, climb_m),
-            Effort::Time => self.bounds.flight_time_s(run_m, climb_m),
-            Effort::PeakSpeed => 0.0,
+impl<'a> Asked<'a> {
+    fn new(
+        ground: &'a DemGround,
+        nodes: &'a SurfaceNodes,
+        how: &'a RouteGoal,
+        progress: &'a dyn Progress,
+    ) -> Result<Self, RouteError> {
+        let surface = SurfaceHops::new(ground, nodes);
+        let node = |at: MapPoint| {
+            let node = nodes.place(at).ok_or(RouteError::NoGround(at))?;
+            Ok::<_, RouteError>((node, surface.position(node).ok_or(RouteError::NoGround(at))?))
         };
-        Some(self.question.effort.cost_of_path(hops, effort))
+        let (start, goal) = (node(how.start)?, node(how.goal)?);
+        let limits = ground.hopper().limits();
+        let bounds = PathBounds::new(limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s(), ground.gravity_m_s2());
+        Ok(Self { surface, start, goal, how, bounds, meter: Meter::new(progress, Stage::Search), pairs: 0 })
     }
 
-    /// The lofts of the hop from one node to another, exactly as a slice and the hop test find them: those that all limits allow, of a
-    /// machine that can be commanded one of them.
-    fn by_slice(&self, [from, to]: [&MapPosition; 2]) -> Option<SlopeInterval> {
-        let test = HopTest::new(self.ground.chain(from.at, to.at).ok()?);
-        let geometry = test.chain().geometry();
-        let ends = [VertexId(0), VertexId(geometry.segment_count())].map(|vertex| geometry.vertex_station(vertex));
-        test.lofts(&ends[0], &ends[1]).ok()
+    /// The greatest number of hops that budgets allow; `None` if any.
+    fn hops_within(&self, budgets: &Budgets) -> Option<u64> {
+        let most = budgets.allowed(Amount::Hops);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; the cast saturates")]
+        most.is_finite().then_some(most as u64)
     }
 
-    fn is_feasible(&self, nodes: [SurfaceNode; 2]) -> bool {
-        let [from, to] = nodes.map(|node| self.nodes.position(self.ground, node));
-        from.zip(to).is_some_and(|(from, to)| self.by_slice([&from, &to]).is_some())
-    }
-
-    /// The cost of the hop from one node to another; `None` if there is none.
-    fn hop(&self, nodes: [SurfaceNode; 2], [from, to]: [&MapPosition; 2], sight: LineOfSight) -> Option<Cost> {
-        let lofts = if self.nodes.may_run_along_edges(self.ground, nodes, [from.at, to.at]) {
-            self.by_slice([from, to])
-        } else {
-            let (_, heading) = self.ground.course(from, to)?;
-            self.ground.lofts_by_walk(from, to, sight, heading)
-        }?;
-        let loft = self.ground.envelope().loft(self.question.takeoff, sight, lofts);
-        Some(self.question.effort.cost(&Arc::new(sight, loft, self.gravity_m_s2), 1))
-    }
-
-    /// How far one hop from a position goes at most, horizontally, m.
-    fn reach_m(&self, from: &MapPosition) -> f64 {
-        let down_m = safety_range_m((from.z_m - self.lowest_m).max(0.0), self.takeoff_max_m_s, self.gravity_m_s2);
-        down_m.min(self.span_max_m) * (1.0 + 1e-6)
-    }
-
-    /// One search: the nodes of the path, none without one, and the answer.
-    fn run(
-        &self,
-        ((start, at), goal): ((SurfaceNode, MapPosition), SurfaceNode),
-        refused: &HashSet<(SurfaceNode, SurfaceNode)>,
-        meter: &Meter<'_>,
-    ) -> Result<(Vec<SurfaceNode>, FreeRoute), RouteError> {
-        let mut labels = vec![Label { cost: Cost::UNREACHED, from: u32::MAX }; self.nodes.count()];
-        let mut waiting = BinaryHeap::new();
-        let (mut pairs_tested, mut reached, mut nearest) = (0, 1, at);
-        let mut counter = meter.counter();
-        if let Some(least) = self.least_to_go(&at) {
-            labels[start.index()].cost = Cost::default();
-            waiting.push(Reverse((least, start, Cost::default())));
-        }
-        while let Some(Reverse((_, node, cost))) = waiting.pop() {
-            if node == goal {
+    /// The fewest hops to the goal of all nodes on paths of at most so many hops; without a number, of the fewest that there are.
+    ///
+    /// A path near the straight line says how many hops are enough, beyond which no node counts; where none is near, farther nodes do.
+    fn hops_left(&mut self, most: Option<u64>) -> Result<FewestHops, RouteError> {
+        /// Half of the widths of the first corridors, in longest hops over level ground.
+        const HALF_WIDTHS: [f64; 2] = [1.5, 6.0];
+        let (bounds, start) = (self.bounds, self.start);
+        let rest = |at: &MapPosition| {
+            let run_m = libm::hypot(at.at.x - start.1.at.x, at.at.y - start.1.at.y);
+            bounds.hops(run_m, at.z_m - start.1.z_m).unwrap_or(u64::MAX)
+        };
+        let ends = [start.1.at, self.goal.1.at];
+        let whole = Within { line: None, most: u64::MAX, rest: &rest, until: Some(start.0) };
+        let mut enough = None;
+        for half_width in HALF_WIDTHS {
+            let line = Some((ends, half_width * self.surface.level_m()));
+            let found = FewestHops::from(&self.surface, (Side::Goal, self.goal.0), &Within { line, ..whole }, &self.meter)?;
+            self.pairs += found.pairs;
+            enough = found.of(start.0).map(u64::from);
+            if enough.is_some() {
                 break;
             }
-            // A better label has been taken since.
-            if labels[node.index()].cost != cost {
-                continue;
-            }
-            counter.check()?;
-            let Some(from) = self.nodes.position(self.ground, node) else { continue };
-            for next in self.nodes.about(from.at, self.reach_m(&from)) {
-                // By the hops alone: a bound that needs no ground.
-                if next == node || labels[next.index()].cost <= cost + Cost::of_hops(1) || refused.contains(&(node, next)) {
-                    continue;
-                }
-                let Some(to) = self.nodes.position(self.ground, next) else { continue };
-                let run_m = libm::hypot(to.at.x - from.at.x, to.at.y - from.at.y);
-                if run_m <= self.ground.position_rounding_m() || self.bounds.hops(run_m, to.z_m - from.z_m) != Some(1) {
-                    continue;
-                }
-                let (sight, Some(rest)) = (LineOfSight::new(run_m, to.z_m - from.z_m), self.least_to_go(&to)) else { continue };
-                let least = cost + self.question.effort.least_cost(sight, self.gravity_m_s2);
-                if least >= labels[next.index()].cost || least + rest >= labels[goal.index()].cost {
-                    continue;
-                }
-                pairs_tested += 1;
-                counter.pair()?;
-                let Some(hop) = self.hop([node, next], [&from, &to], sight) else { continue };
-                let label = &mut labels[next.index()];
-                if cost + hop >= label.cost {
-                    continue;
-                }
-                reached += usize::from(label.cost == Cost::UNREACHED);
-                *label = Label { cost: cost + hop, from: node.0 };
-                if (to.at - self.goal.at).norm() < (nearest.at - self.goal.at).norm() {
-                    nearest = to;
-                }
-                waiting.push(Reverse((cost + hop + rest, next, cost + hop)));
-            }
         }
-        let cost = labels[goal.index()].cost;
-        let mut path = Vec::new();
-        if cost != Cost::UNREACHED {
-            path.push(goal);
-            while let Some(last) = path.last().copied().filter(|last| *last != start) {
-                path.push(SurfaceNode(labels[last.index()].from));
-            }
-            path.reverse();
+        let until = if most.is_some() { None } else { Some(start.0) };
+        let within = Within { most: enough.map_or(u64::MAX, |enough| enough.max(most.unwrap_or(0))), until, ..whole };
+        let found = FewestHops::from(&self.surface, (Side::Goal, self.goal.0), &within, &self.meter)?;
+        self.pairs += found.pairs;
+        Ok(found)
+    }
+
+    fn legs<'l>(&'l self, (levels, counted): (&'l FewestHops, Counted), question: &RouteQuestion<'_>) -> SurfaceLegs<'l> {
+        let offered = (question.commands, self.how.takeoff);
+        SurfaceLegs::new(&self.surface, (self.start.0, self.goal), offered, question.errors, (levels, counted), &self.meter)
+    }
+
+    /// The answer where a path of so many hops exists, and the hops that it depends on.
+    fn found(
+        &self,
+        levels: &FewestHops,
+        fewest: u32,
+        question: &RouteQuestion<'_>,
+    ) -> Result<(FreeRoute, Vec<[SurfaceNode; 2]>), RouteError> {
+        let RouteQuestion { objective, budgets, cap, .. } = *question;
+        let most = self.hops_within(budgets);
+        let allows_fewest = most.is_none_or(|most| most >= u64::from(fewest));
+        let hops_decide = objective.first() == Amount::Hops && budgets.all().all(|(amount, _)| amount == Amount::Hops);
+        let (mut work, mut capped) = (RouteWork { pairs_tested: self.pairs, leading: levels.known, ..RouteWork::default() }, false);
+        let mut best = None;
+        if allows_fewest {
+            // Every path of more hops than the fewest is worse.
+            let of_fewest = budgets.with(Amount::Hops, f64::from(fewest)).unwrap_or(*budgets);
+            let counted = match (hops_decide, most) {
+                (true, _) => Counted::OfFewest,
+                (false, Some(_)) => Counted::Known,
+                (false, None) => Counted::All,
+            };
+            let legs = self.legs((levels, counted), question);
+            let result = search(&legs, legs.ends(), objective, if hops_decide { &of_fewest } else { budgets }, cap)?;
+            (work.reached, work.settled, capped) = (result.reached, result.settled, result.capped);
+            work.pairs_tested += legs.pairs();
+            best = result.path.map(|path| (self.path(&legs, &path), path, Vec::new()));
         }
-        let places = (!path.is_empty()).then(|| path.iter().filter_map(|node| self.nodes.position(self.ground, *node)).collect());
-        let cost = if path.is_empty() { Cost::default() } else { cost };
-        Ok((path, FreeRoute { places, cost, pairs_tested, reached, nearest }))
+        let within = best.is_some();
+        if !within {
+            let legs = self.legs((levels, Counted::All), question);
+            let found = without_budgets(&legs, legs.ends(), objective, budgets, cap)?;
+            work.pairs_tested += legs.pairs();
+            best = found.map(|(path, unmet)| (self.path(&legs, &path), path, unmet));
+        }
+        let (path, hops, unmet) = match best {
+            Some((path, found, unmet)) => (Some(path), SurfaceLegs::hops_of(&found).collect(), unmet),
+            // Labels were left out, of a path that exists.
+            None => (None, Vec::new(), Vec::new()),
+        };
+        Ok((FreeRoute { path, within, unmet, capped, nearest: self.goal.1, gap: None, work }, hops))
+    }
+
+    /// The places, commands and totals of a path.
+    fn path(&self, legs: &SurfaceLegs<'_>, path: &FoundPath) -> RoutePath {
+        let ends = SurfaceLegs::hops_of(path).map(|[_, to]| to);
+        let places = std::iter::once(self.start.0).chain(ends).filter_map(|node| self.surface.position(node)).collect();
+        let arcs = path.steps.iter().filter_map(|step| legs.arc(step));
+        RoutePath {
+            places,
+            choices: path.steps.iter().map(|step| legs.choice(step.command)).collect(),
+            cost: arcs.fold(Cost::default(), |cost, arc| cost + self.how.effort.cost(&arc, 1)),
+            totals: path.totals,
+        }
+    }
+
+    /// The answer without a path, where all nodes that lead to the goal are known.
+    fn not_found(&mut self, leading: &FewestHops) -> Result<FreeRoute, RouteError> {
+        let all = Within { line: None, most: u64::MAX, rest: &|_| 0, until: None };
+        let reached = FewestHops::from(&self.surface, (Side::Start, self.start.0), &all, &self.meter)?;
+        self.pairs += reached.pairs;
+        let nearest = |of: &FewestHops, to: MapPosition| {
+            let away = |at: &MapPosition| (at.at - to.at).norm_squared();
+            of.all().filter_map(|node| self.surface.position(node)).min_by(|a, b| away(a).total_cmp(&away(b)))
+        };
+        let gap = RouteGap::between(
+            &self.surface,
+            (&reached, leading),
+            nearest(leading, self.start.1).unwrap_or(self.goal.1),
+            &self.meter,
+        )?;
+        let work = RouteWork { pairs_tested: self.pairs, leading: leading.known, reached: reached.known, settled: 0 };
+        Ok(FreeRoute {
+            path: None,
+            within: false,
+            unmet: Vec::new(),
+            capped: false,
+            nearest: nearest(&reached, self.goal.1).unwrap_or(self.start.1),
+            gap: Some(gap),
+            work,
+        })
     }
 }

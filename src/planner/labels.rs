@@ -100,6 +100,11 @@ impl Labels {
         self.origins.len()
     }
 
+    /// How many nodes have labels.
+    pub(super) fn labelled_nodes(&self) -> usize {
+        self.heads.iter().filter(|head| **head != NONE).count()
+    }
+
     pub(super) fn origin(&self, label: u32) -> Origin {
         self.origins[label as usize]
     }

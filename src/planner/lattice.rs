@@ -83,6 +83,38 @@ impl SurfaceLattice {
         self.map.dx_m().max(self.map.dy_m()) / self.n as f64
     }
 
+    /// Its rows and columns.
+    pub(super) const fn size(&self) -> (usize, usize) {
+        (self.rows, self.cols)
+    }
+
+    /// How many rows and columns of nodes are farther apart than a distance, m; at most all.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "not negative; the cast saturates"
+    )]
+    pub(super) fn cells_within(&self, distance_m: f64) -> (usize, usize) {
+        let cells = |step_m: f64| (distance_m / step_m * self.n as f64) as usize;
+        (cells(self.map.dy_m()).saturating_add(1).min(self.rows), cells(self.map.dx_m()).saturating_add(1).min(self.cols))
+    }
+
+    /// The row and column of a node of the lattice near a position.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "clamped to the lattice first"
+    )]
+    pub(super) fn cell_near(&self, at: MapPoint) -> (usize, usize) {
+        let away = at - self.map.north_west();
+        let cell = |along_m: f64, step_m: f64, count: usize| {
+            (along_m / step_m * self.n as f64).round().clamp(0.0, (count - 1) as f64) as usize
+        };
+        (cell(-away.y, self.map.dy_m(), self.rows), cell(away.x, self.map.dx_m(), self.cols))
+    }
+
     /// The number of a node, row after row from the north-west.
     pub const fn index(&self, i: usize, j: usize) -> usize {
         j * self.cols + i

@@ -14,29 +14,38 @@
 //! two nodes and the hop test along it find ([`HopTest`](crate::hop::HopTest)).
 
 mod amount;
+mod beside;
 mod bounds;
 mod budget;
 mod chain_legs;
+mod fewest_hops;
 mod free_route;
 mod front;
 mod labels;
 mod lattice;
 mod nodes;
 mod objective;
+mod route_gap;
 mod search;
+mod surface_hops;
+mod surface_legs;
 
 pub use amount::{Amount, Amounts};
 pub use bounds::LeastAmounts;
 pub use budget::{BudgetProblem, Budgets, OverBudget, TotalBudget};
-pub use chain_legs::{
-    ChainLegs, ChainPath, ChainQuestion, ChainSearched, SearchedCommands, UnmetBudget, front_on_chain, search_on_chain,
+pub use chain_legs::{ChainLegs, ChainPath, ChainQuestion, ChainSearched, SearchedCommands, front_on_chain, search_on_chain};
+pub use free_route::{
+    FreeRoute, RouteError, RouteFront, RouteGoal, RoutePath, RouteQuestion, RouteWork, free_route, free_route_by, front_of_routes,
 };
-pub use free_route::{FreeRoute, RouteError, RouteGoal, free_route};
 pub use front::front;
 pub use lattice::{NODES_PER_POST_MOST, NodesPerPost, SurfaceLattice};
 pub use nodes::{SurfaceNode, SurfaceNodes, TooManyNodes};
 pub use objective::{Objective, ObjectiveProblem};
-pub use search::{FoundPath, LabelCap, LegGraph, PathStep, SearchResult, Successor, search};
+pub use route_gap::RouteGap;
+pub use search::{FoundPath, LabelCap, LegGraph, LegVisitor, PathStep, SearchResult, Successor, UnmetBudget, search};
+pub use surface_legs::SurfaceLegs;
 
+#[cfg(test)]
+mod surface_tests;
 #[cfg(test)]
 mod tests;

@@ -19,6 +19,12 @@ const NEARLY_ALONG: f64 = 1e-6;
 pub struct SurfaceNode(pub(super) u32);
 
 impl SurfaceNode {
+    /// That of a column and a row of the lattice.
+    #[expect(clippy::cast_possible_truncation, reason = "at most MOST")]
+    pub(super) const fn of_lattice(lattice: &SurfaceLattice, (i, j): (usize, usize)) -> Self {
+        Self(lattice.index(i, j) as u32)
+    }
+
     pub(super) const fn index(self) -> usize {
         self.0 as usize
     }
@@ -43,10 +49,14 @@ pub struct TooManyNodes {
 pub struct SurfaceNodes {
     lattice: SurfaceLattice,
     places: Vec<MapPosition>,
+    /// The numbers of the places, in the order of their eastings or of their northings.
+    sorted: Vec<u32>,
+    /// Whether they are in the order of their eastings: of a slice the longer of both extents.
+    by_easting: bool,
 }
 
 impl SurfaceNodes {
-    /// The most nodes: each has a label of 32 bytes, 8 GiB in all.
+    /// The most nodes: a search takes up to 12 bytes for each, 3 GiB in all.
     pub const MOST: usize = 1 << 28;
 
     /// The lattice, and places beside it: start, goal, the nodes of a slice. Those without ground are left out.
@@ -63,7 +73,8 @@ impl SurfaceNodes {
         let different = places.into_iter().filter(|at| known.insert((at.x.to_bits(), at.y.to_bits())));
         let found: Vec<MapPosition> = different.filter_map(|at| ground.position(at)).collect();
         Self::check(&lattice, found.len())?;
-        Ok(Self { lattice, places: found })
+        let (by_easting, sorted) = in_order(&found);
+        Ok(Self { lattice, places: found, sorted, by_easting })
     }
 
     /// Checks the number of nodes of a lattice with so many places beside it.
@@ -94,6 +105,32 @@ impl SurfaceNodes {
         u32::try_from(self.lattice.count() + index).ok().map(SurfaceNode)
     }
 
+    /// The single places.
+    pub(super) fn single_places(&self) -> impl Iterator<Item = (SurfaceNode, MapPoint)> + '_ {
+        #[expect(clippy::cast_possible_truncation, reason = "at most MOST")]
+        let numbered = |(number, place): (usize, &MapPosition)| (SurfaceNode(number as u32), place.at);
+        (self.lattice.count()..).zip(&self.places).map(numbered)
+    }
+
+    /// The row and column of a node in the lattice, of a single place those of a node near to it.
+    pub(super) fn cell(&self, node: SurfaceNode) -> (usize, usize) {
+        match node.index().checked_sub(self.lattice.count()).and_then(|place| self.places.get(place)) {
+            Some(place) => self.lattice.cell_near(place.at),
+            None => {
+                let (i, j) = self.lattice.node(node.index());
+                (j, i)
+            }
+        }
+    }
+
+    /// Where a node lies on the map.
+    pub(super) fn map_point(&self, node: SurfaceNode) -> Option<MapPoint> {
+        match node.index().checked_sub(self.lattice.count()) {
+            Some(place) => self.places.get(place).map(|place| place.at),
+            None => Some(self.lattice.at(self.lattice.node(node.index()))),
+        }
+    }
+
     /// A node on the ground; `None` without elevation.
     pub fn position(&self, ground: &DemGround, node: SurfaceNode) -> Option<MapPosition> {
         match node.index().checked_sub(self.lattice.count()) {
@@ -105,8 +142,14 @@ impl SurfaceNodes {
     /// All nodes in a square about a position, those of the lattice first.
     pub(super) fn about(&self, at: MapPoint, distance_m: f64) -> impl Iterator<Item = SurfaceNode> + '_ {
         let of_lattice = self.lattice.about(at, distance_m).map(|(i, j)| self.lattice.index(i, j));
-        let near = move |place: &MapPosition| (place.at - at).amax() <= distance_m;
-        let beside = (self.lattice.count()..).zip(&self.places).filter(move |(_, place)| near(place)).map(|(index, _)| index);
+        let key = move |at: MapPoint| if self.by_easting { at.x } else { at.y };
+        let place = |number: &u32| self.places[*number as usize];
+        let first = self.sorted.partition_point(|number| key(place(number).at) < key(at) - distance_m);
+        let in_strip = self.sorted[first..].iter().map(|number| *number as usize).map_while(move |number| {
+            let away = self.places.get(number)?.at - at;
+            (key(MapPoint::origin() + away) <= distance_m).then_some((number, away))
+        });
+        let beside = in_strip.filter(move |(_, away)| away.amax() <= distance_m).map(|(number, _)| self.lattice.count() + number);
         #[expect(clippy::cast_possible_truncation, reason = "at most MOST")]
         of_lattice.chain(beside).map(|index| SurfaceNode(index as u32))
     }
@@ -127,4 +170,21 @@ impl SurfaceNodes {
         let on_a_line = |a: f64, b: f64| (a - b).abs() < NEARLY_ALONG && (a - a.round()).abs() < NEARLY_ALONG;
         on_a_line(from.x, to.x) || on_a_line(from.y, to.y) || on_a_line(from.x - from.y, to.x - to.y)
     }
+}
+
+/// The numbers of places in the order of the coordinate over which they extend farther, and whether that is the easting.
+#[expect(clippy::cast_possible_truncation, reason = "at most MOST")]
+fn in_order(places: &[MapPosition]) -> (bool, Vec<u32>) {
+    let extent = |of: fn(&MapPosition) -> f64| {
+        let all = || places.iter().map(of);
+        all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
+    };
+    let by_easting = extent(|place| place.at.x) >= extent(|place| place.at.y);
+    let key = |number: &u32| places[*number as usize].at;
+    let mut sorted: Vec<u32> = (0..places.len() as u32).collect();
+    sorted.sort_by(|a, b| {
+        let (a, b) = (key(a), key(b));
+        if by_easting { a.x.total_cmp(&b.x) } else { a.y.total_cmp(&b.y) }
+    });
+    (by_easting, sorted)
 }

@@ -1,6 +1,7 @@
 //! What is to be least.
 
 use super::Amount;
+use crate::graph::Effort;
 
 /// An ordered list of amounts: the first is least, the second breaks its ties, and so on. Ties are equal doubles of sums from the start.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,6 +71,17 @@ impl Objective {
     /// One amount alone.
     pub fn of(amount: Amount) -> Self {
         Self(vec![amount])
+    }
+
+    /// The number of hops, then an effort.
+    pub fn hops_then(effort: Effort) -> Self {
+        let amount = match effort {
+            Effort::TakeoffSpeed => Amount::TakeoffSpeed,
+            Effort::Energy => Amount::Energy,
+            Effort::Time => Amount::FlightTime,
+            Effort::PeakSpeed => Amount::PeakSpeed,
+        };
+        Self(vec![Amount::Hops, amount])
     }
 
     /// The amounts, the first first: at least one, each once.

@@ -7,7 +7,7 @@
 use std::{cmp::Ordering, collections::BinaryHeap};
 
 use super::{
-    Amount, Amounts, Budgets, Objective,
+    Amount, Amounts, Budgets, Objective, OverBudget,
     labels::{Labels, NONE, Origin, Tracked, by_objective},
 };
 use crate::progress::Cancelled;
@@ -18,15 +18,32 @@ pub trait LegGraph {
     /// The number of nodes; they are numbered from 0.
     fn nodes(&self) -> usize;
 
-    /// Visits every leg out of a node, once for each of its distinct commands. The order of visits decides between equals.
+    /// Visits every leg out of a node, once for each of its distinct commands; those that the visitor does not want may be left out. The
+    /// order of visits decides between equals.
     ///
     /// # Errors
     /// [`Cancelled`].
-    fn successors(&self, node: usize, visit: &mut dyn FnMut(&Successor)) -> Result<(), Cancelled>;
+    fn successors(&self, node: usize, visitor: &mut dyn LegVisitor) -> Result<(), Cancelled>;
 
     /// What no path from a node to the goal takes less of: for every amount no more than a leg and what is left after it. Zeros are such
     /// bounds.
     fn least_to_goal(&self, node: usize) -> Amounts;
+}
+
+/// What is done with the legs out of a node.
+pub trait LegVisitor {
+    /// Whether a leg to a node that takes at least so much may be of use: a graph need not compute another one.
+    fn wants(&mut self, _node: usize, _least: &Amounts) -> bool {
+        true
+    }
+
+    /// Whether such a leg could improve on what is known at its node, whatever follows: a cheaper question, which needs no ground.
+    fn may_improve(&mut self, _node: usize, _least: &Amounts) -> bool {
+        true
+    }
+
+    /// A leg with one of its commands.
+    fn visit(&mut self, leg: &Successor);
 }
 
 /// A leg with one of its commands.
@@ -85,6 +102,10 @@ pub struct SearchResult {
     pub capped: bool,
     /// How many labels were made.
     pub labels: usize,
+    /// How many of them were settled: the legs out of their nodes visited.
+    pub settled: usize,
+    /// How many nodes have labels.
+    pub reached: usize,
 }
 
 /// A label that waits, the best first; of equals the one of the lower node, then the older one.
@@ -127,7 +148,13 @@ pub fn search(
     let mut run = Run::new(graph, (start, goal), Tracked::new(objective, budgets), cap);
     let best = run.until(true)?;
     let path = best.map(|label| run.path(label)).transpose()?;
-    Ok(SearchResult { path, capped: run.labels.capped, labels: run.labels.len() })
+    Ok(SearchResult {
+        path,
+        capped: run.labels.capped,
+        labels: run.labels.len(),
+        settled: run.settled,
+        reached: run.labels.labelled_nodes(),
+    })
 }
 
 /// One search on its way.
@@ -136,7 +163,82 @@ pub(super) struct Run<'g, G> {
     start: usize,
     goal: usize,
     pub(super) labels: Labels,
+    /// How many labels were settled: their legs visited.
+    pub(super) settled: usize,
     queue: BinaryHeap<Waiting>,
+}
+
+/// Space for the amounts of one leg after another.
+#[derive(Debug, Default)]
+struct Scratch {
+    totals: Vec<f64>,
+    whole: Vec<f64>,
+}
+
+/// A label whose legs are visited.
+struct Settled<'r, G> {
+    graph: &'r G,
+    goal: usize,
+    labels: &'r mut Labels,
+    queue: &'r mut BinaryHeap<Waiting>,
+    label: u32,
+    scratch: &'r mut Scratch,
+}
+
+impl<G: LegGraph> Settled<'_, G> {
+    /// Whether the amounts in the scratch may belong to a path that is better than those to the goal that are known; leaves what such a
+    /// path takes at least.
+    fn leads_on(&mut self, node: usize) -> bool {
+        let Scratch { totals, whole } = &mut *self.scratch;
+        let labels = &*self.labels;
+        // A path that takes at least as much of everything as one that is known is not better.
+        labels.tracked.with_rest(totals, &self.graph.least_to_goal(node), whole) && !labels.node_dominates(self.goal, whole)
+    }
+}
+
+impl<G: LegGraph> LegVisitor for Settled<'_, G> {
+    fn wants(&mut self, node: usize, least: &Amounts) -> bool {
+        self.may_improve(node, least) && self.leads_on(node)
+    }
+
+    fn may_improve(&mut self, node: usize, least: &Amounts) -> bool {
+        self.labels.extended(self.label, least, &mut self.scratch.totals);
+        !self.labels.node_dominates(node, &self.scratch.totals)
+    }
+
+    fn visit(&mut self, leg: &Successor) {
+        self.labels.extended(self.label, &leg.amounts, &mut self.scratch.totals);
+        if !self.leads_on(leg.node) {
+            return;
+        }
+        let origin = Origin { node: number(leg.node), before: self.label, command: leg.command };
+        if let Some(label) = self.labels.offer(&self.scratch.totals, origin) {
+            let key = self.labels.tracked.key(&self.scratch.whole);
+            self.queue.push(Waiting { key, node: origin.node, label });
+        }
+    }
+}
+
+/// Looks for the amounts of one leg.
+struct OnlyLeg {
+    step: PathStep,
+    amounts: Amounts,
+}
+
+impl LegVisitor for OnlyLeg {
+    fn wants(&mut self, node: usize, _: &Amounts) -> bool {
+        node == self.step.to
+    }
+
+    fn may_improve(&mut self, node: usize, _: &Amounts) -> bool {
+        node == self.step.to
+    }
+
+    fn visit(&mut self, leg: &Successor) {
+        if leg.node == self.step.to && leg.command == self.step.command {
+            self.amounts = leg.amounts;
+        }
+    }
 }
 
 impl<'g, G: LegGraph> Run<'g, G> {
@@ -151,12 +253,12 @@ impl<'g, G: LegGraph> Run<'g, G> {
         {
             queue.push(Waiting { key: labels.tracked.key(&whole), node, label });
         }
-        Self { graph, start, goal, labels, queue }
+        Self { graph, start, goal, labels, settled: 0, queue }
     }
 
     /// Settles labels until the best one of the goal, or until none waits.
     pub(super) fn until(&mut self, first_is_enough: bool) -> Result<Option<u32>, Cancelled> {
-        let (mut totals, mut whole) = (Vec::new(), Vec::new());
+        let mut scratch = Scratch::default();
         while let Some(Waiting { node, label, .. }) = self.queue.pop() {
             if !self.labels.is_alive(label) {
                 continue;
@@ -168,21 +270,9 @@ impl<'g, G: LegGraph> Run<'g, G> {
                 }
                 continue;
             }
+            self.settled += 1;
             let Self { graph, goal, labels, queue, .. } = self;
-            graph.successors(node, &mut |leg| {
-                labels.extended(label, &leg.amounts, &mut totals);
-                if !labels.tracked.with_rest(&totals, &graph.least_to_goal(leg.node), &mut whole) {
-                    return;
-                }
-                // A path that takes at least as much of everything as one that is known.
-                if labels.node_dominates(*goal, &whole) {
-                    return;
-                }
-                let origin = Origin { node: number(leg.node), before: label, command: leg.command };
-                if let Some(label) = labels.offer(&totals, origin) {
-                    queue.push(Waiting { key: labels.tracked.key(&whole), node: origin.node, label });
-                }
-            })?;
+            graph.successors(node, &mut Settled { graph: *graph, goal: *goal, labels, queue, label, scratch: &mut scratch })?;
         }
         Ok(None)
     }
@@ -205,13 +295,9 @@ impl<'g, G: LegGraph> Run<'g, G> {
         steps.reverse();
         let mut totals = Amounts::NONE;
         for step in &steps {
-            let mut amounts = Amounts::NONE;
-            self.graph.successors(step.from, &mut |leg| {
-                if leg.node == step.to && leg.command == step.command {
-                    amounts = leg.amounts;
-                }
-            })?;
-            totals = totals.then(&amounts);
+            let mut only = OnlyLeg { step: *step, amounts: Amounts::NONE };
+            self.graph.successors(step.from, &mut only)?;
+            totals = totals.then(&only.amounts);
         }
         Ok(FoundPath { steps, totals })
     }
@@ -224,12 +310,34 @@ const fn number(node: usize) -> u32 {
 }
 
 /// The least total of an amount over all paths, and whether labels were left out; `None` if there is no path.
-pub(super) fn least_total(
-    graph: &impl LegGraph,
-    ends: (usize, usize),
-    amount: Amount,
-    cap: LabelCap,
-) -> Result<Option<f64>, Cancelled> {
+fn least_total(graph: &impl LegGraph, ends: (usize, usize), amount: Amount, cap: LabelCap) -> Result<Option<f64>, Cancelled> {
     let found = search(graph, ends, &Objective::of(amount), &Budgets::NONE, cap)?;
     Ok(found.path.map(|path| path.totals.of(amount)))
+}
+
+/// A budget that the best path without budgets does not keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnmetBudget {
+    /// By how much that path exceeds it.
+    pub over: OverBudget,
+    /// The least total of this amount over all paths.
+    pub least: f64,
+}
+
+/// Where no path keeps the budgets: the best without them, and for each budget that it exceeds the least of any path. `None` if there is no
+/// path.
+pub(super) fn without_budgets(
+    graph: &impl LegGraph,
+    ends: (usize, usize),
+    objective: &Objective,
+    budgets: &Budgets,
+    cap: LabelCap,
+) -> Result<Option<(FoundPath, Vec<UnmetBudget>)>, Cancelled> {
+    let Some(best) = search(graph, ends, objective, &Budgets::NONE, cap)?.path else { return Ok(None) };
+    let mut unmet = Vec::new();
+    for over in budgets.exceeded_by(&best.totals) {
+        let least = least_total(graph, ends, over.amount, cap)?.unwrap_or(over.total);
+        unmet.push(UnmetBudget { over, least });
+    }
+    Ok(Some((best, unmet)))
 }

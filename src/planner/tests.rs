@@ -21,8 +21,14 @@ impl LegGraph for Stored {
         self.edges.len()
     }
 
-    fn successors(&self, node: usize, visit: &mut dyn FnMut(&Successor)) -> Result<(), Cancelled> {
-        self.edges[node].iter().for_each(visit);
+    fn successors(&self, node: usize, visitor: &mut dyn LegVisitor) -> Result<(), Cancelled> {
+        for leg in &self.edges[node] {
+            // Any bound does: that of the leg itself, of some legs.
+            let wanted = leg.command != 0 || visitor.may_improve(leg.node, &leg.amounts) && visitor.wants(leg.node, &leg.amounts);
+            if wanted {
+                visitor.visit(leg);
+            }
+        }
         Ok(())
     }
 

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    planner::{Amount, Amounts, Budgets, ChainSearched, Objective, TotalBudget},
+    planner::{Amount, Amounts, Budgets, Objective, TotalBudget, UnmetBudget},
     quantity::format_number,
 };
 
@@ -51,12 +51,16 @@ pub struct BudgetRecord {
 }
 
 impl ObjectiveRecord {
-    /// From the result of a search.
-    pub fn new(objective: &Objective, budgets: &[TotalBudget], searched: &ChainSearched) -> Self {
-        let total_of = |amount| searched.totals.map(|totals| totals.of(amount));
+    /// From the result of a search: what its path takes, the budgets that none keeps, and whether labels were left out.
+    pub fn new(
+        objective: &Objective,
+        budgets: &[TotalBudget],
+        (found, unmet, capped): (Option<Amounts>, &[UnmetBudget], bool),
+    ) -> Self {
+        let total_of = |amount| found.map(|totals| totals.of(amount));
         let budget = |budget: &TotalBudget| {
             let total = total_of(budget.amount);
-            let unmet = searched.unmet.iter().find(|unmet| unmet.over.amount == budget.amount);
+            let unmet = unmet.iter().find(|unmet| unmet.over.amount == budget.amount);
             let met = total.is_none_or(|total| keeps(budget.amount, total, budget.most));
             BudgetRecord {
                 amount: budget.amount,
@@ -73,7 +77,7 @@ impl ObjectiveRecord {
             objective: objective.amounts().to_vec(),
             objective_totals: totals.collect(),
             budgets: budgets.iter().map(budget).collect(),
-            labels_capped: searched.capped,
+            labels_capped: capped,
         }
     }
 

@@ -3,8 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::limit_counts::LimitCounts;
+
 /// How a route over a DEM was searched, in any direction.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RouteRecord {
     /// `free`.
     pub kind: RouteKind,
@@ -12,12 +14,35 @@ pub struct RouteRecord {
     pub nodes_per_post: usize,
     /// The distance of neighbouring nodes of the lattice in a row or a column, m; the greater of both.
     pub node_spacing_m: f64,
-    /// The labels of the nodes, bytes.
+    /// What the search keeps of every node, bytes; its labels and what waits come on top.
     pub search_bytes: u64,
-    /// Nodes reached before the search ended, the start included.
+    /// Nodes that the search for the best path reached, the start included; without a path all that the start reaches.
     pub reached_nodes: usize,
     /// The reached place nearest to the goal, [easting, northing, height], m.
     pub nearest_m: [f64; 3],
+    /// Without a path: what lies between the places reached and those that lead to the goal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gap: Option<RouteGapRecord>,
+}
+
+/// What lies between the places that the start reaches and those from which the goal can be reached, over the nodes of the search.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RouteGapRecord {
+    /// The place nearest to the start from which the goal can be reached, [easting, northing, height], m.
+    pub leads_to_goal_from_m: [f64; 3],
+    /// The number of nodes from which the goal can be reached, itself included.
+    pub leads_to_goal_nodes: usize,
+    /// The least horizontal distance from a reached node to one that leads to the goal, m; null if none are as near as one hop by its
+    /// speeds.
+    pub width_m: Option<f64>,
+    /// Pairs of a reached node and one that leads to the goal, as near as one hop by its speeds.
+    pub pairs: u64,
+    /// How many of these pairs were judged, evenly of all.
+    pub judged_pairs: u64,
+    /// The number of judged pairs whose hop is refused by each limit.
+    pub refusals: LimitCounts,
+    /// The number of judged pairs with missing elevations between them.
+    pub without_ground: u64,
 }
 
 /// The kind of a route.
@@ -52,12 +77,34 @@ impl RouteRecord {
         )
     }
 
-    /// How near the search came, in words.
-    pub(super) fn nearest(&self) -> String {
-        let [x_m, y_m, _] = self.nearest_m;
-        format!(
-            "the reached place nearest to the goal is ({x_m:.3}, {y_m:.3}) m; more nodes may find a path: this is no proof that there is none"
-        )
+    /// How near the search came, and what refuses to go on, a sentence a line.
+    pub(super) fn nearest(&self) -> Vec<String> {
+        let place = |[x_m, y_m, _]: [f64; 3]| format!("({x_m:.3}, {y_m:.3}) m");
+        let mut said = vec![format!(
+            "the reached place nearest to the goal is {}; more nodes may find a path: this is no proof that there is none",
+            place(self.nearest_m)
+        )];
+        let Some(gap) = &self.gap else { return said };
+        said.push(format!(
+            "the goal can be reached from {} of these nodes, of which {} is nearest to the start",
+            gap.leads_to_goal_nodes,
+            place(gap.leads_to_goal_from_m)
+        ));
+        said.push(match gap.width_m {
+            None => "none of these is as near to a reached place as one hop by its speeds: the gap is wider than a hop".to_owned(),
+            Some(width_m) => {
+                let missing = (gap.without_ground > 0).then(|| format!("missing elevations {}", gap.without_ground));
+                let by_limit = gap.refusals.ranked().into_iter().map(|(limit, count)| format!("{limit} {count}"));
+                let refused: Vec<String> = by_limit.chain(missing).collect();
+                format!(
+                    "the gap is {width_m:.3} m wide; of {} hops across it {} were judged, refused by {}",
+                    gap.pairs,
+                    gap.judged_pairs,
+                    refused.join(", ")
+                )
+            }
+        });
+        said
     }
 }
 

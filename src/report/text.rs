@@ -415,7 +415,7 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         Some(route) => {
             sheet.line(format_args!("{}", route.nodes(answer.nodes, answer.pairs_tested)));
             if answer.hops.is_none() {
-                sheet.line(format_args!("{}", route.nearest()));
+                route.nearest().iter().for_each(|sentence| sheet.line(format_args!("{sentence}")));
             }
         }
         None => sheet.line(format_args!(

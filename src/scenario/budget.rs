@@ -3,7 +3,7 @@
 use super::{Entries, ProblemKind, Scenario, UncertaintyKeys};
 use crate::{
     ballistics::{TakeoffChoice, delta_v_of_propellant_m_s},
-    graph::{Effort, ReliabilityUse},
+    graph::ReliabilityUse,
     planner::{Amount, Budgets, Objective, SearchedCommands, TotalBudget},
     uncertainty::Policy,
     world::Hopper,
@@ -67,8 +67,7 @@ impl Scenario {
 
     /// The objective: that of the scenario, or else hops, then effort.
     pub fn full_objective(&self) -> Objective {
-        let by_effort = || Objective::new(vec![Amount::Hops, amount_of(self.search.effort)]);
-        self.objective.clone().or_else(|| by_effort().ok()).unwrap_or_else(|| Objective::of(Amount::Hops))
+        self.objective.clone().unwrap_or_else(|| Objective::hops_then(self.search.effort))
     }
 
     /// The greatest totals of a path, without their keys.
@@ -76,16 +75,6 @@ impl Scenario {
         // The catalogue's ranges are those of a budget.
         let with = |budgets: Budgets, total: &TotalBudget| budgets.with(total.amount, total.most).unwrap_or(budgets);
         self.budget.totals(&self.hopper).iter().fold(Budgets::NONE, with)
-    }
-}
-
-/// The amount of an effort.
-const fn amount_of(effort: Effort) -> Amount {
-    match effort {
-        Effort::TakeoffSpeed => Amount::TakeoffSpeed,
-        Effort::Energy => Amount::Energy,
-        Effort::Time => Amount::FlightTime,
-        Effort::PeakSpeed => Amount::PeakSpeed,
     }
 }
 

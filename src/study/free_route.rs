@@ -3,19 +3,23 @@
 use std::path::Path;
 
 use super::{
-    Case, CaseError, Commands, Defect, JourneyError, Prepared, SimulateError, dem_ground::dem_ground, pipeline::planned_over,
+    Case, CaseError, Commands, Defect, JourneyError, Prepared, SimulateError, dem_ground::dem_ground, objective,
+    pipeline::planned_over,
 };
 use crate::{
-    ballistics::PathBounds,
+    ballistics::{PathBounds, TakeoffChoice},
     chain::Station,
     graph::{self, Edge, Leg, NodeSet, Outcome, PointSpacing, RefusalCounts, ReliabilityUse, SearchError},
     ground::{ContactPoint, DemGround, MapPosition, Surface},
     hop::HopTest,
     path::{Hop, HopPath, execute},
-    planner::{FreeRoute, NodesPerPost, RouteError, RouteGoal, SurfaceLattice, SurfaceNodes, free_route},
+    planner::{
+        Amount, Budgets, FreeRoute, LabelCap, NodesPerPost, Objective, RouteError, RouteGoal, RoutePath, RouteQuestion,
+        SearchedCommands, SurfaceLattice, SurfaceNodes, free_route_by,
+    },
     progress::Progress,
     quantity::{MapPoint, VertexId},
-    report::{CheckAnswer, DeratingRecord, RouteKind, RouteRecord},
+    report::{CheckAnswer, DeratingRecord, ObjectiveRecord, RouteGapRecord, RouteKind, RouteRecord},
     scenario::{Route, Scenario, TerrainSource},
     terrain::MapPlace,
 };
@@ -79,72 +83,145 @@ pub(super) fn along_transect(scenario: &Scenario, question: &'static str) -> Res
     }
 }
 
+/// What a search for free routes is asked of.
+pub(super) struct FreeSearch {
+    /// The case, for exact commands.
+    pub(super) case: Case,
+    /// The whole ground under the limits that planning may use.
+    pub(super) ground: DemGround,
+    pub(super) nodes: SurfaceNodes,
+    pub(super) goal: RouteGoal,
+    ends: (Station, Station),
+    /// What is to be least, and the greatest totals.
+    objective: Objective,
+    pub(super) budgets: Budgets,
+}
+
+impl FreeSearch {
+    pub(super) fn of(case: &Case) -> Result<Self, JourneyError> {
+        let case = case.with_commands(Commands::Exact)?;
+        let ends = case.ends()?;
+        let geometry = case.planning().chain.geometry();
+        let at = |station: &Station| geometry.map_point(station).ok_or(FreeRouteError::NoDem);
+        let (start, goal) = (at(&ends.0)?, at(&ends.1)?);
+        let ground = planning_ground(&case)?;
+        let nodes = nodes(&case, &ground, [start, goal])?;
+        let search = &case.scenario.search;
+        let goal = RouteGoal { start, goal, effort: search.effort, takeoff: search.takeoff };
+        let (objective, budgets) = (case.scenario.full_objective(), case.scenario.total_budgets());
+        Ok(Self { case, ground, nodes, goal, ends, objective, budgets })
+    }
+
+    /// The best route by the objective, within the budgets.
+    fn route(&self, progress: &dyn Progress) -> Result<FreeRoute, JourneyError> {
+        let scenario = &self.case.scenario;
+        let by_risk = self.objective.amounts().contains(&Amount::Risk);
+        let whole = dem_ground(&self.case).map_err(Box::new)?;
+        let errors = scenario.uncertainty.as_ref().filter(|_| by_risk).map(|keys| &keys.errors);
+        let question = RouteQuestion {
+            objective: &self.objective,
+            budgets: &self.budgets,
+            commands: scenario.commands,
+            errors: errors.zip(whole.as_ref()),
+            cap: LabelCap::default(),
+        };
+        Ok(free_route_by(&self.ground, &self.nodes, &self.goal, &question, progress)?)
+    }
+
+    /// A path unrolled to a chain, and flown again over it and over the DEM.
+    pub(super) fn unrolled(&self, path: &RoutePath, commands: SearchedCommands) -> Result<Unrolled, JourneyError> {
+        let case = unrolled(&self.case, &path.places)?;
+        let test = case.hop_test();
+        let choices = (commands == SearchedCommands::Distinct).then_some(path.choices.as_slice());
+        let legs = legs(&test, &path.places, choices)?;
+        let ends = match (legs.first(), legs.last()) {
+            (Some(first), Some(last)) => (first.takeoff, last.landing),
+            _ => case.ends()?,
+        };
+        // Exact commands of single hops: neither too many to list, nor without a command.
+        let flown = case.planning().path(&test, &legs, &self.case.scenario.search).ok();
+        if let Some(path) = &flown {
+            verify(case.planning(), &self.ground, path, ends)?;
+        }
+        Ok(Unrolled { case, test, legs, ends, path: flown })
+    }
+
+    /// What the answer says of the objective, for a scenario that plans by one.
+    fn objective_record(&self, route: &FreeRoute) -> Option<ObjectiveRecord> {
+        let scenario = &self.case.scenario;
+        let said = (route.path.as_ref().map(|path| path.totals), route.unmet.as_slice(), route.capped);
+        let budgets = scenario.budget.totals(&scenario.hopper);
+        scenario.plans_by_objective().then(|| ObjectiveRecord::new(&self.objective, &budgets, said))
+    }
+
+    /// What is to be known about the answer.
+    fn warnings(&self, path: Option<&RoutePath>) -> Vec<String> {
+        let scenario = &self.case.scenario;
+        let mut warnings = left_out(scenario);
+        warnings.extend(coarse_nodes(&self.ground, self.nodes.lattice().spacing_m()));
+        if scenario.plans_by_objective() {
+            #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
+            let spanned =
+                |path: &RoutePath| path.totals.of(Amount::Distance) / path.choices.len() as f64 / self.nodes.lattice().spacing_m();
+            warnings.extend(objective::warnings(scenario, path.filter(|path| !path.choices.is_empty()).map(spanned)));
+        }
+        warnings
+    }
+}
+
+/// A route along its unrolled chain.
+pub(super) struct Unrolled {
+    pub(super) case: Case,
+    pub(super) test: HopTest,
+    pub(super) legs: Vec<Leg>,
+    pub(super) ends: (Station, Station),
+    pub(super) path: Option<HopPath>,
+}
+
 /// Searches for the route from the start of a case to its goal, and flies it again over its unrolled chain and over the DEM.
 ///
 /// # Errors
 /// [`JourneyError`].
 pub(super) fn found_route(case: &Case, progress: &dyn Progress) -> Result<FoundRoute, JourneyError> {
-    if case.scenario.plans_by_objective() {
-        along_transect(&case.scenario, "a path by an objective or within budgets is found")?;
-    }
     if case.scenario.budget.estimated_success_min.is_some() {
         along_transect(&case.scenario, "a path with a least success is found")?;
     }
-    let mut warnings = warnings(&case.scenario);
-    let case = case.with_commands(Commands::Exact)?;
-    let ends = case.ends()?;
-    let geometry = case.planning().chain.geometry();
-    let at = |station: &Station| geometry.map_point(station).ok_or(FreeRouteError::NoDem);
-    let (start, goal) = (at(&ends.0)?, at(&ends.1)?);
-    let ground = planning_ground(&case)?;
-    let nodes = nodes(&case, &ground, [start, goal])?;
-    let search = &case.scenario.search;
-    let question = RouteGoal { start, goal, effort: search.effort, takeoff: search.takeoff };
-    let route = free_route(&ground, &nodes, &question, progress)?;
-    let record = record(&nodes, &route);
-    warnings.extend(coarse_nodes(&ground, record.node_spacing_m));
+    let search = FreeSearch::of(case)?;
+    let route = search.route(progress)?;
+    let case = &search.case;
+    let mut warnings = search.warnings(route.path.as_ref());
     let answer = |outcome| graph::Answer {
         outcome,
-        spacing: PointSpacing::AtMostM(nodes.lattice().spacing_m()),
+        spacing: PointSpacing::AtMostM(search.nodes.lattice().spacing_m()),
         points_per_segment: 0,
-        nodes: nodes.count(),
-        pairs_tested: route.pairs_tested,
+        nodes: search.nodes.count(),
+        pairs_tested: route.work.pairs_tested,
         refusals: RefusalCounts::default(),
     };
-    let lower = lower_bound(&ground, [start, goal]);
+    let lower = lower_bound(&search.ground, [search.goal.start, search.goal.goal]);
     let checked = |test: &HopTest, ends: &(Station, Station), found: &graph::Answer| {
-        let check = CheckAnswer::new(test, ends.0.point.x_m, ends.1.point.x_m, found, search.effort);
-        let check = check.with_derating(DeratingRecord::of(&case.scenario.derating));
-        CheckAnswer { hops_lower_bound: lower, route: Some(record), ..check }
+        let check = CheckAnswer::new(test, ends.0.point.x_m, ends.1.point.x_m, found, search.goal.effort);
+        let check =
+            check.with_objective(search.objective_record(&route)).with_derating(DeratingRecord::of(&case.scenario.derating));
+        CheckAnswer { hops_lower_bound: lower, route: Some(record(&search.nodes, &route)), ..check }
     };
-    let Some(places) = &route.places else {
-        // No station of a chain stands for where a route in any direction ends; the record has the nearest place.
-        let (test, found) = (case.hop_test(), answer(Outcome::EndpointsRefuse(Vec::new())));
+    let Some(found_path) = &route.path else {
+        // No station of a chain stands for where a route in any direction ends; the record has the places.
+        let (test, found, ends) = (case.hop_test(), answer(Outcome::EndpointsRefuse(Vec::new())), search.ends);
         let check = checked(&test, &ends, &found);
-        return Ok(FoundRoute { test, ends, found, check, path: None, warnings, case });
+        return Ok(FoundRoute { test, ends, found, check, path: None, warnings, case: search.case });
     };
-    let unrolled = unrolled(&case, places)?;
-    let test = unrolled.hop_test();
-    let legs = legs(&test, places)?;
-    let ends = match (legs.first(), legs.last()) {
-        (Some(first), Some(last)) => (first.takeoff, last.landing),
-        _ => unrolled.ends()?,
-    };
-    // Exact commands of single hops: neither too many to list, nor without a command.
-    let path = unrolled.planning().path(&test, &legs, search).ok();
-    if let Some(path) = &path {
-        verify(unrolled.planning(), &ground, path, ends)?;
-        warnings.extend(case.scenario.path_warnings(path));
-    }
-    let found = answer(Outcome::Path { legs, cost: route.cost });
+    let Unrolled { case: unrolled, test, legs, ends, path } = search.unrolled(found_path, case.scenario.commands)?;
+    warnings.extend(path.iter().flat_map(|path| case.scenario.path_warnings(path)));
+    let found = answer(Outcome::Path { legs, cost: found_path.cost });
     let check = checked(&test, &ends, &found).with_path(path.as_ref());
-    Ok(FoundRoute { test, ends, found, check, path, warnings, case: unrolled.asked_by(&case) })
+    Ok(FoundRoute { test, ends, found, check, path, warnings, case: unrolled.asked_by(case) })
 }
 
 /// What a free route leaves out of a scenario.
-fn warnings(scenario: &Scenario) -> Vec<String> {
+fn left_out(scenario: &Scenario) -> Vec<String> {
     let mut warnings = Vec::new();
-    if scenario.uncertainty.is_some() && scenario.risk != ReliabilityUse::Ignored {
+    if scenario.uncertainty.is_some() && scenario.risk != ReliabilityUse::Ignored && !scenario.plans_by_objective() {
         warnings.push("a free route is searched by hops and effort: the errors of [uncertainty] have no effect on it".to_owned());
     }
     if !scenario.hopper.limits().steps.is_continuous() {
@@ -200,14 +277,23 @@ fn lower_bound(ground: &DemGround, ends: [MapPoint; 2]) -> Option<u64> {
 }
 
 fn record(nodes: &SurfaceNodes, route: &FreeRoute) -> RouteRecord {
-    let nearest = route.nearest;
+    let place = |at: &MapPosition| [at.at.x, at.at.y, at.z_m];
     RouteRecord {
         kind: RouteKind::Free,
         nodes_per_post: nodes.lattice().nodes_per_post(),
         node_spacing_m: nodes.lattice().spacing_m(),
         search_bytes: FreeRoute::bytes(nodes),
-        reached_nodes: route.reached,
-        nearest_m: [nearest.at.x, nearest.at.y, nearest.z_m],
+        reached_nodes: route.work.reached,
+        nearest_m: place(&route.nearest),
+        gap: route.gap.as_ref().map(|gap| RouteGapRecord {
+            leads_to_goal_from_m: place(&gap.leads_from),
+            leads_to_goal_nodes: gap.leading,
+            width_m: gap.width_m,
+            pairs: gap.pairs,
+            judged_pairs: gap.judged,
+            refusals: (&gap.refusals).into(),
+            without_ground: gap.without_ground,
+        }),
     }
 }
 
@@ -241,8 +327,8 @@ fn unrolled(case: &Case, places: &[MapPosition]) -> Result<Case, JourneyError> {
     Ok(Case::new(scenario, Path::new(&case.base), Commands::Exact)?)
 }
 
-/// One leg from each place to the next, along the unrolled chain.
-fn legs(test: &HopTest, places: &[MapPosition]) -> Result<Vec<Leg>, FreeRouteError> {
+/// One leg from each place to the next, along the unrolled chain, with the commands of these choices, or of the one of all hops.
+fn legs(test: &HopTest, places: &[MapPosition], choices: Option<&[TakeoffChoice]>) -> Result<Vec<Leg>, FreeRouteError> {
     let geometry = test.chain().geometry();
     let map = geometry.map_points().unwrap_or_default();
     let mut stations = Vec::with_capacity(places.len());
@@ -256,7 +342,9 @@ fn legs(test: &HopTest, places: &[MapPosition]) -> Result<Vec<Leg>, FreeRouteErr
     let leg = |(hop, ends): (usize, &[Station])| {
         let (takeoff, landing) = (ends[0], ends[1]);
         let lofts = test.lofts(&takeoff, &landing).map_err(|_| FreeRouteError::Lost { hop: hop + 1 })?;
-        Ok(Leg { takeoff, landing, edge: Edge::Hop(lofts), loft: None })
+        let choice = choices.and_then(|choices| choices.get(hop));
+        let loft = choice.zip(test.line_of_sight(&takeoff, &landing)).map(|(choice, sight)| test.loft(*choice, sight, lofts));
+        Ok(Leg { takeoff, landing, edge: Edge::Hop(lofts), loft })
     };
     stations.windows(2).enumerate().map(leg).collect()
 }

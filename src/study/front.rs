@@ -71,14 +71,10 @@ pub(super) fn amount_front(
     let over_same = graph::SearchOptions { spacing: Some(found.spacing), ..scenario.search.clone() };
     let fewest = graph::search(test, ends.0, ends.1, &over_same, progress)?.hops().unwrap_or(0);
     let budgets = scenario.total_budgets();
-    of.front_hops_max = scenario.budget.hops_max.map_or_else(|| fewest + (fewest / 2).max(10), u64::from);
+    of.front_hops_max = front_hops_max(scenario, fewest);
     #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
     let budgets = budgets.with(Amount::Hops, of.front_hops_max as f64).unwrap_or(budgets);
-    // A choice that is no default was made.
-    let is_chosen = matches!(scenario.search.takeoff, TakeoffChoice::MidRange | TakeoffChoice::LeastTime);
-    let keeps_choice = is_chosen || (scenario.plans_by_objective() && scenario.commands == SearchedCommands::Chosen);
-    let commands = if keeps_choice { SearchedCommands::Chosen } else { SearchedCommands::Distinct };
-    let takeoff = if keeps_choice { scenario.search.takeoff } else { TakeoffChoice::LeastSpeed };
+    let (commands, takeoff) = front_commands(scenario);
     let options = graph::SearchOptions { takeoff, ..over_same };
     let objective = Objective::of(amount);
     let question =
@@ -88,33 +84,57 @@ pub(super) fn amount_front(
     let count = paths.len();
     let row = |path: &ChainPath| {
         let hops = generate(test, &path.legs, options.takeoff, options.split).ok()?;
-        let amounts = hops.amounts();
         let same = |(a, b): (&graph::Leg, &graph::Leg)| (a.takeoff, a.landing) == (b.takeoff, b.landing);
-        let only = |wanted: Amount| (amount == wanted).then(|| amounts.of(wanted));
-        Some(FrontRecord {
-            hops: path.cost.hops(),
-            success: None,
-            planned: path.legs.len() == planned.len()
-                && path.legs.iter().zip(planned).all(same)
-                && is_flown_alike(case, test, planned, &amounts),
-            takeoff_speed_sum_m_s: only(Amount::TakeoffSpeed),
-            arc_length_m: only(Amount::ArcLength),
-            totals: TotalsRecord::from(&hops.totals),
-        })
+        let is_planned = path.legs.len() == planned.len()
+            && path.legs.iter().zip(planned).all(same)
+            && is_flown_alike(case, test, planned, &hops.amounts());
+        Some(amount_row(amount, (path.cost.hops(), &hops), is_planned))
     };
     let rows: Vec<_> = paths.iter().filter_map(row).collect();
     let left_out = count - rows.len();
     Ok((rows, of, left_out))
 }
 
+/// The most hops of a front: those of the budget, or else ten, or half the fewest, more than the fewest.
+pub(super) fn front_hops_max(scenario: &Scenario, fewest: u64) -> u64 {
+    scenario.budget.hops_max.map_or_else(|| fewest + (fewest / 2).max(10), u64::from)
+}
+
+/// The commands of the hops of a front, and the one that is flown of those that take the same.
+pub(super) fn front_commands(scenario: &Scenario) -> (SearchedCommands, TakeoffChoice) {
+    // A choice that is no default was made.
+    let is_chosen = matches!(scenario.search.takeoff, TakeoffChoice::MidRange | TakeoffChoice::LeastTime);
+    if is_chosen || (scenario.plans_by_objective() && scenario.commands == SearchedCommands::Chosen) {
+        (SearchedCommands::Chosen, scenario.search.takeoff)
+    } else {
+        (SearchedCommands::Distinct, TakeoffChoice::LeastSpeed)
+    }
+}
+
+/// A row of a front of hops against an amount.
+pub(super) fn amount_row(amount: Amount, (count, hops): (u64, &HopPath), planned: bool) -> FrontRecord {
+    let amounts = hops.amounts();
+    let only = |wanted: Amount| (amount == wanted).then(|| amounts.of(wanted));
+    FrontRecord {
+        hops: count,
+        success: None,
+        planned,
+        takeoff_speed_sum_m_s: only(Amount::TakeoffSpeed),
+        arc_length_m: only(Amount::ArcLength),
+        totals: TotalsRecord::from(&hops.totals),
+    }
+}
+
+/// Whether two paths take the same.
+pub(super) fn are_alike(first: &Amounts, second: &Amounts) -> bool {
+    let alike = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs());
+    Amount::ALL.into_iter().all(|amount| alike(first.of(amount), second.of(amount)))
+}
+
 /// Whether the path of a plan takes these amounts.
 fn is_flown_alike(case: &Case, test: &HopTest, planned: &[graph::Leg], amounts: &Amounts) -> bool {
     let options = &case.scenario.search;
-    let alike = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs());
-    generate(test, planned, options.takeoff, options.split).is_ok_and(|path| {
-        let flown = path.amounts();
-        Amount::ALL.into_iter().all(|amount| alike(flown.of(amount), amounts.of(amount)))
-    })
+    generate(test, planned, options.takeoff, options.split).is_ok_and(|path| are_alike(&path.amounts(), amounts))
 }
 
 /// Why a scenario has no front.

@@ -24,6 +24,7 @@ mod dem_ground;
 mod experiment;
 pub mod fan;
 mod footprint;
+mod free_front;
 mod free_route;
 mod front;
 mod hop;

@@ -6,7 +6,7 @@ use crate::{
     chain::Station,
     graph::{Answer, NodeSet, Outcome, ReliabilityOptions},
     hop::HopTest,
-    planner::{Amount, ChainQuestion, ChainSearched, LabelCap, search_on_chain},
+    planner::{Amount, ChainQuestion, LabelCap, search_on_chain},
     progress::Progress,
     report::ObjectiveRecord,
     scenario::Scenario,
@@ -41,8 +41,9 @@ pub(super) fn by_objective(
         cap: LabelCap::default(),
     };
     let searched = search_on_chain(test, ends, &scenario.search, &question, progress)?;
-    let record = ObjectiveRecord::new(&objective, &scenario.budget.totals(&scenario.hopper), &searched);
-    let warnings = warnings(scenario, test, ends, &searched);
+    let said = (searched.totals, searched.unmet.as_slice(), searched.capped);
+    let record = ObjectiveRecord::new(&objective, &scenario.budget.totals(&scenario.hopper), said);
+    let warnings = warnings(scenario, spanned_nodes(test, ends, &searched.answer));
     Ok(Some(ByObjective { found: searched.answer, record, warnings }))
 }
 
@@ -57,8 +58,8 @@ pub(super) fn reliability(case: &Case, counts: bool) -> Result<Option<Reliabilit
     Ok(Some(scenario.reliability_with(None, ground.as_ref()).flown_under(case.whole_test().as_ref())))
 }
 
-/// What is to be known about a path by objective.
-fn warnings(scenario: &Scenario, test: &HopTest, ends: (Station, Station), searched: &ChainSearched) -> Vec<String> {
+/// What is to be known about a path by objective, whose hops span so many nodes on average.
+pub(super) fn warnings(scenario: &Scenario, spanned: Option<f64>) -> Vec<String> {
     /// The least number of nodes at which they do not decide the length of a hop.
     const SPANNED: f64 = 3.0;
     let mut warnings = Vec::new();
@@ -71,7 +72,7 @@ fn warnings(scenario: &Scenario, test: &HopTest, ends: (Station, Station), searc
         ));
     }
     let is_energy = objective.first() == Amount::Energy && scenario.hopper.limits().preparation_energy_j.is_none_or(|j| j == 0.0);
-    if let Some(spanned) = spanned_nodes(test, ends, &searched.answer).filter(|spanned| is_energy && *spanned < SPANNED) {
+    if let Some(spanned) = spanned.filter(|spanned| is_energy && *spanned < SPANNED) {
         warnings.push(format!(
             "hops of this path span {spanned:.1} nodes on average, expected at least {SPANNED}: without an energy to prepare a hop the least \
              energy is nearly the same whatever the hops, so that the nodes decide how short they are; put hops first, or give \

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use super::{
     Case, CaseError, Commands, Front, FrontProblem, JourneyError, Proof, SimulateError,
     dem_ground::dem_ground,
+    free_front::free_front,
     free_route::{FoundRoute, along_transect, found_route},
     front::{amount_front, front},
     journey::Searched,
@@ -183,18 +184,24 @@ fn plan_free(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resu
     if options.proof.is_some() {
         along_transect(&case.scenario, "bounds that hold at any resolution are proved")?;
     }
-    if options.front.is_some() {
-        along_transect(&case.scenario, "a front of hops against another amount is found")?;
+    if let Some(front) = options.front {
+        front.check(&case.scenario)?;
+        if front == Front::HOPS_RISK {
+            along_transect(&case.scenario, "a front of hops against the estimated success is found")?;
+        }
     }
-    let FoundRoute { case, test, ends, found, check, path, warnings } = found_route(case, progress)?;
+    let asked = case;
+    let FoundRoute { case, test, ends, found, check, path, warnings } = found_route(asked, progress)?;
+    let front = options.front.map(|front| free_front(asked, path.as_ref(), front.amount(), progress)).transpose()?;
+    let (front, front_search) = front.unzip();
     let answer = PlanAnswer {
         check,
         verified: path.is_some().then_some(true),
         path: path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default(),
         totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
         reliable_paths: Vec::new(),
-        front: None,
-        front_search: None,
+        front,
+        front_search,
     };
     Ok(Planned { case, test, ends, found, path, answer, warnings, to_go: None })
 }

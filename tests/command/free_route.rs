@@ -111,6 +111,81 @@ fn a_free_route_that_is_not_found_says_how_near_it_came() {
     assert!((110.0..114.0).contains(&east), "west of the wall, {east} m");
 }
 
+/// What a no says of the wall: both sides of it, and the limits of the hops across.
+#[test]
+fn a_no_names_the_limits_that_refuse_the_hops_across_the_gap() {
+    let desk = walled();
+    // A hop over 30 m of height takes more than these speeds, and one round the wall needs the gap in the north.
+    let ran = desk.run(&["check", "free.toml", "--set", "surface.keep_out=zone.geojson"]);
+    assert_eq!(ran.status, 2, "a file that is not there");
+    let zone = r#"{"type": "Polygon", "coordinates": [[[110, 215], [118, 215], [118, 220], [110, 220], [110, 215]]]}"#;
+    desk.write("zone.geojson", zone);
+    let args = ["check", "free.toml", "--set", "surface.keep_out=zone.geojson"];
+    let ran = desk.run(&args);
+    assert_eq!(ran.status, 1, "{}", ran.stderr);
+    for part in ["the goal can be reached from", "is nearest to the start", "hops across it", "refused by"] {
+        assert!(ran.stdout.contains(part), "{part}: {}", ran.stdout);
+    }
+    let gap = &desk.json(&args)["route"]["gap"];
+    let number = |key: &str| gap[key].as_f64().unwrap();
+    let east = gap["leads_to_goal_from_m"][0].as_f64().unwrap();
+    assert!(east > 113.0 && number("leads_to_goal_nodes") > 10.0, "{gap}");
+    assert!(number("width_m") > 0.0 && number("judged_pairs") <= number("pairs"), "{gap}");
+    let refusals: f64 = gap["refusals"].as_object().unwrap().values().map(|count| count.as_f64().unwrap()).sum();
+    assert!(refusals > 0.0 && refusals + number("without_ground") <= number("judged_pairs"), "{gap}");
+}
+
+#[test]
+fn objectives_and_budgets_hold_in_any_direction() {
+    let desk = walled();
+    let at_least = |keys: &[&str]| {
+        let args: Vec<&str> = ["plan", "free.toml"].into_iter().chain(keys.iter().flat_map(|key| ["--set", key])).collect();
+        desk.json(&args)
+    };
+    let total = |document: &Value, amount: &str| {
+        let totals = document["objective_totals"].as_array().unwrap();
+        totals.iter().find(|row| row["amount"] == amount).unwrap()["total"].as_f64().unwrap()
+    };
+    let by_hops = at_least(&["search.objective=[\"hops\", \"energy\"]"]);
+    let by_time = at_least(&["search.objective=[\"flight-time\", \"hops\"]"]);
+    let (hops, energy) = (total(&by_hops, "hops"), total(&by_hops, "energy"));
+    assert_eq!((by_hops["hops"].as_f64(), &by_hops["verified"]), (Some(hops), &true.into()));
+    let flown = by_hops["totals"]["energy_j_kg"].as_f64().unwrap();
+    assert!((flown - energy).abs() < 1e-6 * energy, "{flown} against {energy}");
+    let (fast, of_fewest) = (total(&by_time, "flight-time"), by_hops["totals"]["flight_time_s"].as_f64().unwrap());
+    assert!(fast < of_fewest && total(&by_time, "hops") >= hops, "{fast} s against {of_fewest} s");
+    // A budget of just that is kept, one below is not, and the least says so.
+    let most = format!("budget.flight_time_total_max_s={}", fast * 1.000_001);
+    let within = at_least(&[&most]);
+    assert_eq!((&within["verdict"], &within["budgets"][0]["met"]), (&"traversable".into(), &true.into()));
+    let short = format!("budget.flight_time_total_max_s={}", fast * 0.99);
+    let ran = desk.run(&["check", "free.toml", "--set", &short]);
+    assert!(ran.status == 1 && ran.stdout.contains("the least of any path over these nodes is"), "{}", ran.stdout);
+    assert_eq!(desk.run(&["check", "free.toml", "--set", &format!("budget.hops_max={}", hops - 1.0)]).status, 1);
+    assert_eq!(desk.run(&["check", "free.toml", "--set", &format!("budget.hops_max={hops}")]).status, 0);
+    // Risk counts, and is said to be of the plan alone.
+    let errors = [
+        "uncertainty.takeoff_speed_sigma_fraction=0.01",
+        "uncertainty.goal_tolerance_m=1",
+        "search.objective=[\"hops\", \"risk\"]",
+    ];
+    let by_risk = at_least(&errors);
+    assert!(total(&by_risk, "risk") > 0.0 && total(&by_risk, "hops") == hops, "{by_risk}");
+}
+
+#[test]
+fn a_front_of_free_routes_improves_row_by_row() {
+    let desk = walled();
+    let coarse = ["--node-spacing-max-m", "1", "--goal", "113,208"];
+    let args = [&["plan", "free.toml", "--front", "hops,flight-time", "--plot-front", "front.svg"][..], &coarse].concat();
+    let document = desk.json(&args);
+    let rows = document["front"].as_array().unwrap();
+    let of = |row: &Value| (row["hops"].as_u64().unwrap(), row["totals"]["flight_time_s"].as_f64().unwrap());
+    assert_eq!((of(&rows[0]).0, &document["front_amount"]), (document["hops"].as_u64().unwrap(), &"flight-time".into()));
+    assert!(rows.windows(2).all(|pair| of(&pair[0]).0 < of(&pair[1]).0 && of(&pair[0]).1 > of(&pair[1]).1), "{rows:?}");
+    assert!(desk.read("front.svg").contains("<svg"));
+}
+
 #[test]
 fn start_and_goal_are_positions_on_the_map_or_along_the_slice() {
     let desk = walled();
@@ -185,7 +260,11 @@ fn the_commands_of_the_document_run() {
         for hops in ["25 hops over 360 m", "27 over 349 m"] {
             assert!(document.contains(hops));
         }
-        let said = if command.contains("free.toml") { "25 hops" } else { "27 hops" };
+        let said = match command {
+            _ if command.contains("--front") => "hops against flight-time",
+            _ if command.contains("free.toml") => "25 hops",
+            _ => "27 hops",
+        };
         if command.starts_with("plan") {
             assert!(ran.stdout.contains(said), "{command}: {}", ran.stdout);
         }

@@ -27,7 +27,7 @@ use crate::{
 const EFFORTS: [Effort; 4] = [Effort::TakeoffSpeed, Effort::Energy, Effort::Time, Effort::PeakSpeed];
 
 /// The lattice of n nodes a post spacing, start and goal, and the nodes of the straight slice between them at this spacing.
-fn nodes(ground: &DemGround, n: u32, [start, goal]: [MapPoint; 2], slice_spacing_m: Option<f64>) -> SurfaceNodes {
+pub(crate) fn nodes(ground: &DemGround, n: u32, [start, goal]: [MapPoint; 2], slice_spacing_m: Option<f64>) -> SurfaceNodes {
     let dem = ground.terrain().dem();
     let lattice = SurfaceLattice::new(dem, NodesPerPost::at_most_m(1.0 / f64::from(n), 1.0));
     let chain = slice_spacing_m.and_then(|spacing_m| Some((ground.chain(start, goal).ok()?, spacing_m)));
@@ -39,7 +39,7 @@ fn nodes(ground: &DemGround, n: u32, [start, goal]: [MapPoint; 2], slice_spacing
 }
 
 /// The positions of all nodes, each once.
-fn positions(ground: &DemGround, n: u32, places: &[MapPoint]) -> Vec<MapPosition> {
+pub(crate) fn positions(ground: &DemGround, n: u32, places: &[MapPoint]) -> Vec<MapPosition> {
     let dem = ground.terrain().dem();
     let lattice = SurfaceLattice::new(dem, NodesPerPost::at_most_m(1.0 / f64::from(n), 1.0));
     let mut all: Vec<MapPosition> =
@@ -129,11 +129,13 @@ fn compare(ground: &DemGround, n: u32, ends: [MapPoint; 2], (effort, takeoff): (
     let nodes = nodes(ground, n, ends, None);
     let route = found(ground, &nodes, ends, effort, takeoff);
     let expected = own_search(ground, &positions(ground, n, &ends), ends, effort, takeoff);
-    let hops = route.places.as_ref().map(|_| route.cost.hops());
+    let path = route.path.as_ref();
+    let hops = path.map(|path| path.cost.hops());
     assert_eq!(hops, expected.map(|cost| cost.0), "{what}, n = {n}, {effort:?}");
-    if let (Some(places), Some(expected)) = (&route.places, expected) {
-        let apart = (route.cost.effort() - expected.1).abs();
-        assert!(apart <= 1e-6 * (1.0 + expected.1), "{what}, n = {n}, {effort:?}: {} against {}", route.cost.effort(), expected.1);
+    if let (Some(path), Some(expected)) = (path, expected) {
+        let places = &path.places;
+        let apart = (path.cost.effort() - expected.1).abs();
+        assert!(apart <= 1e-6 * (1.0 + expected.1), "{what}, n = {n}, {effort:?}: {} against {}", path.cost.effort(), expected.1);
         assert_eq!(([places[0].at, places[places.len() - 1].at], places.len() as u64 - 1), (ends, expected.0), "{what}");
         // The amount of the path is that of its legs, each by its own slice.
         let legs = places.windows(2).map(|pair| price(ground, &pair[0], &pair[1], effort, takeoff).unwrap());
@@ -157,13 +159,13 @@ fn place(draw: &mut Draw, dem: &Dem) -> MapPoint {
     MapPoint::new(draw.uniform(bounds.min.x, bounds.max.x), draw.uniform(bounds.min.y, bounds.max.y))
 }
 
-fn random_world(draw: &mut Draw, side: usize) -> World {
+pub(crate) fn random_world(draw: &mut Draw, side: usize) -> World {
     let (hopper, gravity_m_s2) = random_hopper(draw);
     World::new(random_dem(draw, side), hopper, random_surface(draw), gravity_m_s2)
 }
 
 /// Two different places with ground.
-fn random_ends(draw: &mut Draw, ground: &DemGround) -> Option<[MapPoint; 2]> {
+pub(crate) fn random_ends(draw: &mut Draw, ground: &DemGround) -> Option<[MapPoint; 2]> {
     let ends = [0, 1].map(|_| place(draw, ground.terrain().dem()));
     (ends[0] != ends[1] && ends.iter().all(|at| ground.position(*at).is_some())).then_some(ends)
 }
@@ -232,7 +234,7 @@ fn more_nodes_and_more_directions_never_cost_a_hop() {
         let hops = [1, 2, 4].map(|n| {
             let route =
                 found(&ground, &nodes(&ground, n, ends, Some(spacing_m)), ends, Effort::TakeoffSpeed, TakeoffChoice::LeastSpeed);
-            route.places.map(|_| route.cost.hops())
+            route.path.map(|path| path.cost.hops())
         });
         for pair in hops.windows(2) {
             if let Some(coarse) = pair[0] {

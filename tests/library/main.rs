@@ -27,6 +27,7 @@ mod fly;
 mod footprint;
 mod formats_table;
 mod free_route;
+mod free_route_objectives;
 #[cfg(feature = "gdal")]
 mod gdal_feature;
 mod graph;

@@ -107,27 +107,7 @@ impl Journey {
     }
 
     fn of_hops(&self, hops: &[(Arc, f64)], first: bool) -> Amounts {
-        let limits = *self.test.hopper().limits();
-        let waits = limits.preparation_time_s.unwrap_or(0.0) + limits.settling_time_s.unwrap_or(0.0);
-        let mut sum = Amounts::NONE;
-        for (arc, count) in hops.iter().filter(|(_, count)| *count > 0.0) {
-            let v = arc.takeoff_speed_m_s();
-            let (across, down) = (arc.horizontal_speed_m_s(), arc.horizontal_speed_m_s() * arc.landing_slope());
-            let braking = limits.landing.touchdown_speed_m_s().map_or(0.0, |touchdown| across.hypot(down + touchdown));
-            let mut add = |amount, each: f64| sum = sum.with(amount, sum.of(amount) + each * count);
-            add(Amount::Hops, 1.0);
-            add(Amount::TakeoffSpeed, v);
-            add(Amount::DeltaV, v + braking + limits.hop_delta_v_overhead_m_s.unwrap_or(0.0));
-            let prepared = limits.preparation_energy_j.unwrap_or(0.0) / limits.mass_kg.unwrap();
-            add(Amount::Energy, 0.5 * v * v / limits.efficiency.unwrap_or(1.0) + prepared);
-            add(Amount::FlightTime, arc.flight_time_s());
-            add(Amount::MissionTime, arc.flight_time_s() + waits);
-            add(Amount::Distance, arc.line_of_sight().run_m());
-            add(Amount::ArcLength, arc.length_m());
-            sum = sum.with(Amount::PeakSpeed, sum.of(Amount::PeakSpeed).max(v));
-        }
-        let settled = if first { limits.settling_time_s.unwrap_or(0.0) } else { 0.0 };
-        sum.with(Amount::MissionTime, sum.of(Amount::MissionTime) - settled)
+        amounts_of(self.test.hopper().limits(), hops, first)
     }
 
     /// The least total of an amount over all paths (Bellman and Ford over all pairs), or the least peak.
@@ -151,6 +131,30 @@ impl Journey {
         }
         least[nodes.goal().index()]
     }
+}
+
+/// What so many hops along each of these arcs take, from the equations of an arc alone.
+pub(crate) fn amounts_of(limits: &HopperLimits, hops: &[(Arc, f64)], first: bool) -> Amounts {
+    let waits = limits.preparation_time_s.unwrap_or(0.0) + limits.settling_time_s.unwrap_or(0.0);
+    let mut sum = Amounts::NONE;
+    for (arc, count) in hops.iter().filter(|(_, count)| *count > 0.0) {
+        let v = arc.takeoff_speed_m_s();
+        let (across, down) = (arc.horizontal_speed_m_s(), arc.horizontal_speed_m_s() * arc.landing_slope());
+        let braking = limits.landing.touchdown_speed_m_s().map_or(0.0, |touchdown| across.hypot(down + touchdown));
+        let mut add = |amount, each: f64| sum = sum.with(amount, sum.of(amount) + each * count);
+        add(Amount::Hops, 1.0);
+        add(Amount::TakeoffSpeed, v);
+        add(Amount::DeltaV, v + braking + limits.hop_delta_v_overhead_m_s.unwrap_or(0.0));
+        let prepared = limits.preparation_energy_j.unwrap_or(0.0) / limits.mass_kg.unwrap_or(1.0);
+        add(Amount::Energy, 0.5 * v * v / limits.efficiency.unwrap_or(1.0) + prepared);
+        add(Amount::FlightTime, arc.flight_time_s());
+        add(Amount::MissionTime, arc.flight_time_s() + waits);
+        add(Amount::Distance, arc.line_of_sight().run_m());
+        add(Amount::ArcLength, arc.length_m());
+        sum = sum.with(Amount::PeakSpeed, sum.of(Amount::PeakSpeed).max(v));
+    }
+    let settled = if first { limits.settling_time_s.unwrap_or(0.0) } else { 0.0 };
+    sum.with(Amount::MissionTime, sum.of(Amount::MissionTime) - settled)
 }
 
 fn close(a: f64, b: f64) -> bool {

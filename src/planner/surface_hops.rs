@@ -1,0 +1,120 @@
+//! Single hops between the nodes of a DEM.
+
+use std::collections::HashSet;
+
+use nalgebra::Vector2;
+
+use super::{SurfaceNode, SurfaceNodes};
+use crate::{
+    ballistics::LineOfSight,
+    ground::{DemGround, HopReach, MapPosition},
+    hop::HopTest,
+    quantity::{SlopeInterval, VertexId},
+    world::Limit,
+};
+
+/// From which end nodes are searched, and which way the hops between them then lead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// From the start, along the hops.
+    Start,
+    /// From the goal, against the hops.
+    Goal,
+}
+
+/// The feasible arcs of a hop.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Feasible {
+    pub(super) sight: LineOfSight,
+    pub(super) heading: Vector2<f64>,
+    pub(super) lofts: SlopeInterval,
+}
+
+/// The hops between nodes, for any thread.
+#[derive(Clone, Debug)]
+pub(super) struct SurfaceHops<'s> {
+    pub(super) ground: &'s DemGround,
+    pub(super) nodes: &'s SurfaceNodes,
+    reach: HopReach,
+    /// Hops that the walk over the triangles has and their slice has not.
+    refused: HashSet<[SurfaceNode; 2]>,
+}
+
+impl<'s> SurfaceHops<'s> {
+    pub(super) fn new(ground: &'s DemGround, nodes: &'s SurfaceNodes) -> Self {
+        Self { ground, nodes, reach: HopReach::of(ground), refused: HashSet::new() }
+    }
+
+    pub(super) fn position(&self, node: SurfaceNode) -> Option<MapPosition> {
+        self.nodes.position(self.ground, node)
+    }
+
+    /// The nodes among which all are that one hop leads to, or from which it leads here.
+    pub(super) fn about(&self, at: &MapPosition, side: Side) -> impl Iterator<Item = SurfaceNode> + '_ {
+        self.nodes.about(at.at, self.reach_m(at, side))
+    }
+
+    /// A horizontal distance that no hop exceeds which begins at a position, or which ends there, m.
+    pub(super) fn reach_m(&self, at: &MapPosition, side: Side) -> f64 {
+        let reach_m = match side {
+            Side::Start => self.reach.run_m(at),
+            Side::Goal => self.reach.run_into_m(at),
+        };
+        reach_m * (1.0 + 1e-9)
+    }
+
+    /// The length of the longest hop over level ground, m.
+    pub(super) fn level_m(&self) -> f64 {
+        self.reach.level_m()
+    }
+
+    /// The line of sight of a hop and its heading; `None` if the greatest speeds exclude it.
+    pub(super) fn sight(&self, from: &MapPosition, to: &MapPosition) -> Option<(LineOfSight, Vector2<f64>)> {
+        self.reach.sight(self.ground, from, to)
+    }
+
+    /// The hop from one node to another; `None` if there is none.
+    ///
+    /// A walk over the triangles, which equals the slice up to rounding; where the line may run along an edge between two facets, the slice.
+    pub(super) fn between(
+        &self,
+        nodes: [SurfaceNode; 2],
+        [from, to]: [&MapPosition; 2],
+        (sight, heading): (LineOfSight, Vector2<f64>),
+    ) -> Option<Feasible> {
+        if !self.refused.is_empty() && self.refused.contains(&nodes) {
+            return None;
+        }
+        let lofts = if self.nodes.may_run_along_edges(self.ground, nodes, [from.at, to.at]) {
+            self.by_slice([from, to])?.ok()
+        } else {
+            self.ground.lofts_by_walk(from, to, sight, heading)
+        }?;
+        Some(Feasible { sight, heading, lofts })
+    }
+
+    /// The feasible lofts by the slice and the hop test along it, or the limit that leaves none: what the route is flown by. `None` without
+    /// ground all along.
+    pub(super) fn by_slice(&self, [from, to]: [&MapPosition; 2]) -> Option<Result<SlopeInterval, Limit>> {
+        let test = HopTest::new(self.ground.chain(from.at, to.at).ok()?);
+        let geometry = test.chain().geometry();
+        let ends = [VertexId(0), VertexId(geometry.segment_count())].map(|vertex| geometry.vertex_station(vertex));
+        Some(test.lofts(&ends[0], &ends[1]))
+    }
+
+    /// Refuses from now on the hops of a path that their slices do not have: on the very edge of a limit the walk may differ from them.
+    ///
+    /// # Returns
+    /// Whether there are any.
+    pub(super) fn refuse_wrong(&mut self, hops: impl IntoIterator<Item = [SurfaceNode; 2]>) -> bool {
+        let before = self.refused.len();
+        for hop in hops {
+            let [from, to] = hop.map(|node| self.position(node));
+            let is_right = from.zip(to).is_some_and(|(from, to)| matches!(self.by_slice([&from, &to]), Some(Ok(_))));
+            if !is_right {
+                self.refused.insert(hop);
+            }
+        }
+        self.refused.len() > before
+    }
+}
