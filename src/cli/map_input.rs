@@ -11,7 +11,7 @@ use chta::{
 
 use super::{
     Failure,
-    args::{MapArgs, SearchArgs},
+    args::{MapArgs, NodeSpacing, SearchArgs},
     claims,
     effects::Purpose,
     inputs,
@@ -38,7 +38,8 @@ impl MapInput {
         if *stride == 0 {
             return Err(Failure::message("--stride: found 0, expected a whole number of at least 1"));
         }
-        let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
+        let node_spacing_max_m = args.node_spacing_max_m.and_then(NodeSpacing::metres);
+        let searched = SearchArgs { points_per_segment: None, node_spacing_max_m, effort: effort.clone().flatten() };
         let has_start = args.starts.is_some() || !(args.start.is_empty() && args.start_lonlat.is_empty());
         let has_goal = !(args.goal.is_empty() && args.goal_lonlat.is_empty());
         let purpose = |ends| Purpose::Map {
@@ -80,6 +81,7 @@ impl MapInput {
             starts: self.starts.clone(),
             goals: self.goals.clone(),
             stride: args.stride as usize,
+            auto_nodes: args.node_spacing_max_m == Some(NodeSpacing::Auto),
             effort: args.effort.is_some(),
             returns: args.back,
             mobility: args.mobility.is_some(),

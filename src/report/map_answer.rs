@@ -21,6 +21,9 @@ use crate::{
 pub struct MapAnswer {
     /// Every `stride`-th post of the DEM is a post of the map.
     pub stride: usize,
+    /// Nodes for each post spacing, where the nodes of the map are finer than the posts; what is said of posts is then said of nodes.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub nodes_per_post: usize,
     /// Posts of the map.
     pub posts: usize,
     /// Of these, posts without elevation.
@@ -178,7 +181,7 @@ impl MapAnswer {
     /// The summary of the maps; the caller adds the goals, and the shares of the limits.
     pub fn new(summary: &MapSummary<'_>) -> Self {
         let MapSummary { dem, lattice, out, .. } = *summary;
-        let map = dem.georeference().every(lattice.stride);
+        let map = lattice.map(dem.georeference());
         let starts = start_records(summary, &map);
         let first = starts.first().copied();
         let reachable = |index: usize| out.hops[index] >= 0;
@@ -199,6 +202,7 @@ impl MapAnswer {
         let reachable_area_m2 = reachable_posts as f64 * map.dx_m() * map.dy_m();
         Self {
             stride: lattice.stride,
+            nodes_per_post: lattice.per_post,
             posts: lattice.count(),
             no_data_posts: out.hops.iter().filter(|&&hops| hops == NO_GROUND).count(),
             start_m: first.map_or([0.0; 2], |start| [start.x_m, start.y_m]),
@@ -238,6 +242,11 @@ impl MapAnswer {
         }
     }
 
+    /// What the map has answers for, in words: a post, or a node of a lattice that is finer than the posts.
+    pub const fn node(&self) -> &'static str {
+        if self.nodes_per_post > 1 { "node" } else { "post" }
+    }
+
     /// Whether every goal is reachable by a path that the machine can fly.
     pub fn reaches_all_goals(&self) -> bool {
         self.goals.iter().all(|goal| goal.hops.is_some() && goal.propellant_shortage.is_none())
@@ -245,8 +254,9 @@ impl MapAnswer {
 
     /// The answer as text.
     pub fn text(&self) -> String {
+        let node = self.node();
         let mut text = format!(
-            "{} of {} posts reachable from {}, {:.6} km2, in at most {}\n",
+            "{} of {} {node}s reachable from {}, {:.6} km2, in at most {}\n",
             self.reachable_posts,
             self.posts,
             self.from(),
@@ -254,7 +264,7 @@ impl MapAnswer {
             format_hops(self.farthest_hops)
         );
         let beside = format!(
-            "{} reachable post{} on the map's border, {} beside no-data",
+            "{} reachable {node}{} on the map's border, {} beside no-data",
             self.reachable_posts_at_border,
             if self.reachable_posts_at_border == 1 { "" } else { "s" },
             self.reachable_posts_at_no_data
@@ -266,17 +276,20 @@ impl MapAnswer {
             for (number, StartRecord { x_m, y_m, offset_m, nearest_posts }) in (1..).zip(&self.starts) {
                 let _ = writeln!(
                     text,
-                    "start {number} ({x_m:.3}, {y_m:.3}) m, {offset_m:.3} m from the place asked for: nearest to {nearest_posts} post{}",
+                    "start {number} ({x_m:.3}, {y_m:.3}) m, {offset_m:.3} m from the place asked for: nearest to {nearest_posts} {node}{}",
                     if *nearest_posts == 1 { "" } else { "s" }
                 );
             }
             let _ = writeln!(text, "{beside}");
         }
+        if self.nodes_per_post > 1 {
+            let _ = writeln!(text, "nodes: {} for each post spacing", self.nodes_per_post);
+        }
         if let Some(derating) = &self.derating {
             let _ = writeln!(text, "{}", derating.sentence());
         }
         if let (Some(most), Some(posts)) = (self.hops_max, self.not_searched_posts) {
-            let _ = writeln!(text, "{}", not_searched(most, posts));
+            let _ = writeln!(text, "{}", not_searched(most, posts, node));
         }
         if let Some(MapEffortRecord { kind, unit, greatest }) = &self.effort {
             let _ = writeln!(text, "{}: at most {greatest:.4} {unit}", kind.total());
@@ -284,7 +297,7 @@ impl MapAnswer {
         if let Some(back) = &self.back {
             let _ = writeln!(
                 text,
-                "return: {} can be reached again from {} posts, {} of them reachable, in at most {}",
+                "return: {} can be reached again from {} {node}s, {} of them reachable, in at most {}",
                 if self.starts.len() > 1 { "a start" } else { "the start" },
                 back.return_posts,
                 back.round_trip_posts,
@@ -294,7 +307,7 @@ impl MapAnswer {
         if let Some(mobility) = &self.mobility {
             let _ = writeln!(
                 text,
-                "mobility: one hop reaches {:.1} % of the posts within {:.3} m on average; most at ({:.3}, {:.3}) m: {:.1} %, in {} of {} directions",
+                "mobility: one hop reaches {:.1} % of the {node}s within {:.3} m on average; most at ({:.3}, {:.3}) m: {:.1} %, in {} of {} directions",
                 100.0 * mobility.mean_share,
                 mobility.disc_radius_m,
                 mobility.best_m[0],
@@ -308,7 +321,7 @@ impl MapAnswer {
             text.push_str(&self.goal_text(goal));
         }
         if !self.hops_histogram.is_empty() {
-            let _ = writeln!(text, "\n{:>6}{:>12}", "hops", "posts");
+            let _ = writeln!(text, "\n{:>6}{:>12}", "hops", format!("{node}s"));
         }
         for (first, last, posts) in histogram_rows(&self.hops_histogram) {
             let hops = if first == last { first.to_string() } else { format!("{first}-{last}") };
@@ -359,13 +372,24 @@ impl MapAnswer {
     }
 }
 
+/// Nodes for each post spacing where they are the posts.
+const fn one() -> usize {
+    1
+}
+
+/// Whether the nodes are the posts.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+const fn is_one(nodes_per_post: &usize) -> bool {
+    *nodes_per_post == 1
+}
+
 /// What a bounded search has left open.
-fn not_searched(most: i16, posts: usize) -> String {
+fn not_searched(most: i16, posts: usize, node: &str) -> String {
     if posts == 0 {
-        return format!("searched up to {}; no post is farther", format_hops(most));
+        return format!("searched up to {}; no {node} is farther", format_hops(most));
     }
     let s = if posts == 1 { "" } else { "s" };
-    format!("searched up to {}: {posts} other post{s} may be farther, or unreachable, and were not searched", format_hops(most))
+    format!("searched up to {}: {posts} other {node}{s} may be farther, or unreachable, and were not searched", format_hops(most))
 }
 
 /// The starts, with the posts that are nearest to each.

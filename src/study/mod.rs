@@ -30,6 +30,7 @@ mod hop;
 mod journey;
 pub mod map;
 mod measured;
+mod nodes;
 mod objective;
 mod on_body;
 mod physics;

@@ -33,6 +33,7 @@ mod graph;
 mod heading_steps;
 mod layers;
 mod map_equality;
+mod map_nodes;
 mod map_projection;
 mod map_replan;
 mod map_sources;

@@ -38,6 +38,36 @@ fn hop_count(text: &str) -> Result<i16, String> {
     count.ok_or_else(|| format!("found `{text}`, expected a whole number of hops from 1 to {}, such as 10", i16::MAX))
 }
 
+/// How fine the nodes of a map are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum NodeSpacing {
+    /// As fine as one hop wants.
+    Auto,
+    /// At most this far apart, m.
+    AtMostM(f64),
+}
+
+impl NodeSpacing {
+    /// The greatest distance of neighbours, m.
+    pub(crate) const fn metres(self) -> Option<f64> {
+        match self {
+            Self::Auto => None,
+            Self::AtMostM(spacing_m) => Some(spacing_m),
+        }
+    }
+}
+
+/// Reads a spacing of nodes; its range is that of the key.
+fn node_spacing(text: &str) -> Result<NodeSpacing, String> {
+    match text.trim() {
+        "auto" => Ok(NodeSpacing::Auto),
+        other => other
+            .parse()
+            .map(NodeSpacing::AtMostM)
+            .map_err(|_| format!("found `{text}`, expected a number of metres above 0, such as 1.25, or auto")),
+    }
+}
+
 /// Slices in all directions from one point: how far and in how few hops one gets in each
 #[derive(Debug, ClapArgs)]
 #[command(
@@ -107,6 +137,10 @@ pub(crate) struct MapArgs {
     /// Land only on every N-th post; hops are always tested against the full DEM
     #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
     pub(crate) stride: u32,
+    /// Instead, nodes finer than posts: greatest spacing of neighbouring nodes, m, or auto: as fine as one hop wants, 8 nodes long
+    /// [default: the scenario's, or posts]
+    #[arg(long, value_name = "D|auto", value_parser = node_spacing, conflicts_with = "stride", allow_negative_numbers = true)]
+    pub(crate) node_spacing_max_m: Option<NodeSpacing>,
     /// Also least effort among paths of fewest hops: takeoff-speed, energy, time, peak-speed [default: none; alone: the scenario's]
     #[arg(long, value_name = "EFFORT", num_args = 0..=1)]
     #[expect(clippy::option_option, reason = "absent, given alone, or with a value")]

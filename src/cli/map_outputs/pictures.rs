@@ -21,6 +21,7 @@ use crate::cli::{Failure, map_input::MapInput, output};
 pub(super) fn map(input: &MapInput, prepared: &PreparedMap, study: &MapStudy, file: &Path) -> Result<Vec<u8>, Failure> {
     let MapStudy { answer, out, back, paths, .. } = study;
     let can_return: Option<Vec<bool>> = back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
+    let surface = prepared.finest().map_err(|e| Failure::of(&e))?;
     let kept_out = prepared.ground.terrain().overlays().keep_out().map(|zones| kept_out(prepared, zones));
     let goals = prepared.goals.iter().zip(&answer.goals);
     let figure = HopMapFigure {
@@ -28,7 +29,7 @@ pub(super) fn map(input: &MapInput, prepared: &PreparedMap, study: &MapStudy, fi
             title: format!("Where in how few hops: {}", input.title()),
             lines: subtitle(answer, &input.bare.scenario),
         },
-        posts: MapPosts { dem: prepared.dem(), stride: prepared.lattice.stride },
+        posts: MapPosts { dem: &surface, stride: prepared.lattice.stride },
         hops: &out.hops,
         can_return: can_return.as_deref(),
         kept_out: kept_out.as_deref(),
@@ -63,12 +64,17 @@ fn kept_out(prepared: &PreparedMap, zones: &KeepOut) -> Vec<bool> {
 
 /// The subtitle of the picture: the map's assumptions and a summary of its result.
 fn subtitle(answer: &MapAnswer, scenario: &Scenario) -> Vec<String> {
-    let stride = if answer.stride > 1 { format!(", every {} posts", answer.stride) } else { String::new() };
+    let stride = match (answer.stride, answer.nodes_per_post) {
+        (1, 1) => String::new(),
+        (1, n) => format!(", {n} nodes a post spacing"),
+        (stride, _) => format!(", every {stride} posts"),
+    };
     let bound = answer.hops_max.map_or(String::new(), |most| format!(", searched up to {most}"));
     let found = format!(
-        "{} of {} posts reachable from {} in at most {} hops{bound}{stride}",
+        "{} of {} {}s reachable from {} in at most {} hops{bound}{stride}",
         answer.reachable_posts,
         answer.posts,
+        answer.node(),
         answer.from(),
         answer.farthest_hops
     );

@@ -118,7 +118,7 @@ impl PreparedMap {
     /// Searches, and checks the path to every goal.
     fn found(&self, question: &MapQuestion<'_>, progress: &dyn Progress) -> Result<Found, MapStudyError> {
         let options = &question.scenario.search;
-        let hops = PostHops::new(self.planning.clone(), self.lattice.stride)?;
+        let hops = PostHops::over(self.planning.clone(), self.lattice)?;
         let sources: Vec<Source> = self.starts.iter().map(|start| start.post.into()).collect();
         let effort = question.effort.then_some((options.effort, options.takeoff));
         let asked = |journey, effort| Search { journey, effort, hops_max: question.hops_max };
@@ -149,8 +149,7 @@ impl PreparedMap {
             let nearest = hops.nearest_usable(spot.post).map_or_else(
                 || "no post of the DEM is usable".to_owned(),
                 |node| {
-                    let post = hops.lattice().post(node);
-                    let at = self.dem().georeference().post(post.row, post.col);
+                    let at = hops.lattice().at(self.dem().georeference(), node);
                     format!("the nearest usable one is ({:.3}, {:.3}) m", at.x, at.y)
                 },
             );
@@ -184,7 +183,7 @@ impl PreparedMap {
     ) -> Result<Vec<Option<FlownPath>>, MapStudyError> {
         let options = &question.scenario.search;
         let replans = keys.policy == Policy::Replan;
-        let hops = replans.then(|| PostHops::new(self.planning.clone(), self.lattice.stride)).transpose()?;
+        let hops = replans.then(|| PostHops::over(self.planning.clone(), self.lattice)).transpose()?;
         let fly = |goal: &Spot, path: &HopPath| {
             let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
             let mut mission = Mission::over_dem(self.ground.clone(), path.clone(), first.takeoff, last.landing);

@@ -2,6 +2,7 @@
 
 use super::super::{Defect, JourneyEnd, PipelineError};
 use crate::{
+    planner::TooManyNodes,
     quantity::MapPoint,
     reach::map::MapError,
     terrain::{MapBounds, TerrainError},
@@ -59,9 +60,10 @@ pub enum MapStudyError {
     },
     /// More memory than allowed.
     #[error(
-        "the map needs up to {} MiB ({posts} posts of the DEM, {nodes} posts of the map), expected at most {} MiB: take a greater stride, \
+        "the map needs up to {} MiB ({posts} posts of the DEM, {nodes} {} of the map), expected at most {} MiB: take {}, \
          a part of the DEM (gdal_translate -projwin) or a coarser one (gdalwarp -tr), ask for fewer maps at once, or allow more",
-        needed_bytes.div_ceil(1 << 20), allowed_bytes >> 20
+        needed_bytes.div_ceil(1 << 20), if nodes > posts { "nodes" } else { "posts" }, allowed_bytes >> 20,
+        if nodes > posts { "a larger spacing of nodes" } else { "a greater stride" }
     )]
     TooMuchMemory {
         /// The bytes needed at most.
@@ -70,9 +72,12 @@ pub enum MapStudyError {
         allowed_bytes: u64,
         /// Posts of the DEM.
         posts: usize,
-        /// Posts of the map.
+        /// Nodes of the map.
         nodes: usize,
     },
+    /// More nodes than can be numbered.
+    #[error(transparent)]
+    Nodes(#[from] TooManyNodes),
     /// The search.
     #[error(transparent)]
     Map(#[from] MapError),

@@ -3,7 +3,7 @@
 use super::{MapQuestion, MapStudyError};
 use crate::{
     ground::DemGround,
-    reach::map::{HopMap, Mobility, PostHops, PostHopsSize},
+    reach::map::{HopMap, Mobility, NodeLattice, PostHops, PostHopsSize},
     report::{SizeAnswer, SizeRecord},
     terrain::Samples,
     uncertainty::Policy,
@@ -21,7 +21,7 @@ const REPLANNING_BYTES_PER_NODE: usize = 32;
 pub struct MapMemory {
     /// Posts of the DEM.
     pub posts: usize,
-    /// Posts of the map.
+    /// Nodes of the map.
     pub nodes: usize,
     /// Pairs of posts that one hop may join, at most.
     pub pairs_max: u64,
@@ -40,14 +40,14 @@ impl MapMemory {
     ///
     /// # Errors
     /// [`MapStudyError::Map`], if one hop reaches too many posts.
-    pub(super) fn of(question: &MapQuestion<'_>, ground: &DemGround) -> Result<Self, MapStudyError> {
+    pub(super) fn of(question: &MapQuestion<'_>, ground: &DemGround, lattice: NodeLattice) -> Result<Self, MapStudyError> {
         let dem = ground.terrain().dem();
         let posts = dem.rows() * dem.cols();
         let of_post = match dem.samples() {
             Samples::Single(_) => size_of::<f32>(),
             Samples::Double(_) => size_of::<f64>(),
         };
-        let PostHopsSize { nodes, offsets, bytes, preparation_bytes } = PostHops::size(ground, question.stride)?;
+        let PostHopsSize { nodes, offsets, bytes, preparation_bytes } = PostHops::size(ground, lattice)?;
         let has_many = question.starts.len() > 1;
         let mut of_node = HopMap::bytes_per_node(question.effort, has_many);
         if question.returns {

@@ -27,8 +27,10 @@ pub struct MapQuestion<'a> {
     pub starts: Vec<NamedPlace>,
     /// The goals, whose paths are planned and flown again.
     pub goals: Vec<NamedPlace>,
-    /// Every `stride`-th post is a post of the map; 0 counts as 1.
+    /// Every `stride`-th post is a node of the map; 0 counts as 1. With a stride, `search.node_spacing_max_m` has no effect.
     pub stride: usize,
+    /// The lattice of nodes is as fine as one hop wants it, in place of `search.node_spacing_max_m`.
+    pub auto_nodes: bool,
     /// Also the least effort, as the scenario names it, among paths of fewest hops.
     pub effort: bool,
     /// Also the fewest hops back to the nearest start.
