@@ -175,9 +175,21 @@ impl PostHops {
         self.lattice.position(self.ground.terrain().dem(), node)
     }
 
+    /// The height of a node, m; NaN without elevation.
+    #[inline]
+    pub(crate) fn height_m(&self, node: Post) -> f64 {
+        self.heights().at(self.lattice.raster_index(node))
+    }
+
+    /// The same by the number of the node.
+    #[inline]
+    pub(crate) fn height_of_index_m(&self, index: usize) -> f64 {
+        if self.lattice.stride == 1 { self.heights().at(index) } else { self.height_m(self.lattice.node(index)) }
+    }
+
     /// Whether a node has an elevation.
     pub(crate) fn has_ground(&self, node: Post) -> bool {
-        !self.heights().at(self.lattice.raster_index(node)).is_nan()
+        !self.height_m(node).is_nan()
     }
 
     /// Whether a hop in some direction may begin or end at a node.
@@ -229,7 +241,7 @@ impl PostHops {
     }
 
     #[inline]
-    pub(super) fn moved(&self, from: Post, rows: i32, cols: i32) -> Option<Post> {
+    pub(crate) fn moved(&self, from: Post, rows: i32, cols: i32) -> Option<Post> {
         let row = from.row.wrapping_add_signed(rows as isize);
         let col = from.col.wrapping_add_signed(cols as isize);
         (row < self.lattice.rows && col < self.lattice.cols).then_some(Post { row, col })
