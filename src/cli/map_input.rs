@@ -45,10 +45,11 @@ impl MapInput {
         let purpose = |ends| Purpose::Map {
             goals: has_goal || ends != ScenarioEnds::Ignored,
             effort: effort.is_some(),
+            amounts: !args.amount_output.is_empty(),
             trials: args.simulate,
             ends,
         };
-        let bare = load_map(dem, common, &searched, purpose, has_start)?;
+        let bare = load_map(dem, common, (&searched, &args.objective), purpose, has_start)?;
         let mut warnings = Vec::new();
         let starts = match (&args.starts, &bare.ends) {
             (Some(file), _) => of_file(file, &mut warnings)?,
@@ -88,6 +89,7 @@ impl MapInput {
             predecessors: args.predecessor_output.is_some(),
             trials: args.simulate,
             hops_max: args.hops_max,
+            amounts: args.amount_output.iter().map(|output| output.amount).collect(),
             memory_max_bytes: args.size.memory_max_bytes(),
         }
     }

@@ -6,11 +6,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    DeratingRecord, HopRecord, PropellantShortage, SimulationRecord, TotalsRecord, propellant_record::stores_lines, stated::stated,
-    text::hops_bound,
+    AmountRecord, DeratingRecord, HopRecord, PropellantShortage, SimulationRecord, TotalsRecord, propellant_record::stores_lines,
+    stated::stated, text::hops_bound,
 };
 use crate::{
     graph::{Effort, EffortUnit},
+    planner::Amount,
     quantity::MapPoint,
     reach::map::{HopMap, Mobility, NO_GROUND, NOT_SEARCHED, NodeLattice, Post, SECTORS},
     terrain::Dem,
@@ -56,6 +57,12 @@ pub struct MapAnswer {
     /// The second criterion, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effort: Option<MapEffortRecord>,
+    /// What the paths have least, if that is not the number of hops; "hops" are then those of the path found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub objective: Option<MapObjectiveRecord>,
+    /// The greatest total of each amount that was asked for, along the paths found.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub amounts: Vec<AmountRecord>,
     /// The return journeys, if requested.
     #[serde(rename = "return", skip_serializing_if = "Option::is_none")]
     pub back: Option<ReturnRecord>,
@@ -91,6 +98,29 @@ pub struct MapEffortRecord {
     pub unit: EffortUnit,
     /// The greatest effort of any reachable post.
     pub greatest: f64,
+}
+
+/// What the paths of a map have least.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MapObjectiveRecord {
+    /// The amounts: the first is least, each other breaks the ties of those before.
+    pub amounts: Vec<Amount>,
+    /// The greatest total of each at any reached node.
+    pub greatest: Vec<AmountRecord>,
+    /// The greatest total of the first within which nodes count as reached, if it is bounded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub budget: Option<MapBudgetRecord>,
+}
+
+/// The bound of a map on the first amount of its objective.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MapBudgetRecord {
+    /// Of which amount.
+    pub amount: Amount,
+    /// What sets it.
+    pub key: String,
+    /// The greatest total, in the unit of the amount.
+    pub max: f64,
 }
 
 /// Paths back to the nearest start.
@@ -139,6 +169,9 @@ pub struct GoalRecord {
     pub hops_lower_bound: Option<u64>,
     /// False if the search ended at its bound of hops before the goal, so that it is not known whether it can be reached.
     pub searched: bool,
+    /// The totals of the path in all amounts of the objective of the map; empty where it has none, or without a path.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub objective_totals: Vec<AmountRecord>,
     /// Fewest hops back; absent if not requested, null: no path.
     #[serde(default, deserialize_with = "stated", skip_serializing_if = "Option::is_none")]
     pub return_hops: Option<Option<i16>>,
@@ -223,6 +256,8 @@ impl MapAnswer {
                 unit: effort.unit(),
                 greatest: out.effort.iter().copied().fold(0.0, f64::max),
             }),
+            objective: None,
+            amounts: Vec::new(),
             back: summary.back.map(|back| ReturnRecord {
                 return_posts: back.hops.iter().filter(|&&hops| hops >= 0).count(),
                 round_trip_posts: out.hops.iter().zip(&back.hops).filter(|&(&there, &back)| there >= 0 && back >= 0).count(),
@@ -256,11 +291,12 @@ impl MapAnswer {
     pub fn text(&self) -> String {
         let node = self.node();
         let mut text = format!(
-            "{} of {} {node}s reachable from {}, {:.6} km2, in at most {}\n",
+            "{} of {} {node}s reachable from {}, {:.6} km2, {} at most {}\n",
             self.reachable_posts,
             self.posts,
             self.from(),
             self.reachable_area_m2 * 1.0e-6,
+            if self.objective.is_some() { "by paths of" } else { "in" },
             format_hops(self.farthest_hops)
         );
         let beside = format!(
@@ -290,6 +326,9 @@ impl MapAnswer {
         }
         if let (Some(most), Some(posts)) = (self.hops_max, self.not_searched_posts) {
             let _ = writeln!(text, "{}", not_searched(most, posts, node));
+        }
+        for line in self.objective_lines() {
+            let _ = writeln!(text, "{line}");
         }
         if let Some(MapEffortRecord { kind, unit, greatest }) = &self.effort {
             let _ = writeln!(text, "{}: at most {greatest:.4} {unit}", kind.total());
@@ -339,12 +378,36 @@ impl MapAnswer {
         text
     }
 
+    /// What the paths have least, what bounds it, and the totals that were asked for.
+    fn objective_lines(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if let Some(MapObjectiveRecord { amounts, greatest, budget }) = &self.objective {
+            for (place, AmountRecord { amount, total }) in greatest.iter().enumerate() {
+                let then = if place == 0 { "" } else { "then " };
+                lines.push(format!("{then}least {}: at most {}", amount.words(), with_unit(*total, *amount)));
+            }
+            if let (Some(first), Some(MapBudgetRecord { key, max, .. })) = (amounts.first(), budget) {
+                let (most, node) = (with_unit(*max, *first), self.node());
+                lines.push(format!("within {most} ({key}): a {node} beyond counts as not searched"));
+            }
+        }
+        let along = |AmountRecord { amount, total }: &AmountRecord| {
+            format!("{} along the paths: at most {}", amount.words(), with_unit(*total, *amount))
+        };
+        lines.extend(self.amounts.iter().map(along));
+        lines
+    }
+
     /// How many hops a goal is away, and what bounds them.
     fn goal_text(&self, goal: &GoalRecord) -> String {
         let mut text = String::new();
         // Writing to a String cannot fail.
         let unreached = match self.hops_max {
             Some(most) if !goal.searched => format!("not within {}, and not searched beyond", format_hops(most)),
+            None if !goal.searched => match self.objective.as_ref().and_then(|objective| objective.budget.as_ref()) {
+                Some(budget) => format!("not within {}, and not searched beyond", with_unit(budget.max, budget.amount)),
+                None => "not searched".to_owned(),
+            },
             _ => "not reached over these nodes".to_owned(),
         };
         let from = goal.start.filter(|_| self.starts.len() > 1).map_or(String::new(), |number| format!(" from start {number}"));
@@ -362,6 +425,10 @@ impl MapAnswer {
         if let Some(lower) = goal.hops_lower_bound.filter(|_| goal.hops.is_some() || goal.searched) {
             let _ = writeln!(text, "  {}", hops_bound(goal.hops.map(i16::unsigned_abs).map(u64::from), lower));
         }
+        for (place, AmountRecord { amount, total }) in goal.objective_totals.iter().enumerate() {
+            let least = if place == 0 { "least " } else { "" };
+            let _ = writeln!(text, "  {least}{}: {}", amount.words(), with_unit(*total, *amount));
+        }
         for line in goal.totals.iter().flat_map(stores_lines) {
             let _ = writeln!(text, "  {line}");
         }
@@ -369,6 +436,14 @@ impl MapAnswer {
             let _ = writeln!(text, "  not with its propellant: {}", shortage.sentence());
         }
         text
+    }
+}
+
+/// A total with its unit.
+fn with_unit(total: f64, amount: Amount) -> String {
+    match amount {
+        Amount::Hops => format!("{total} hop{}", if total == 1.0 { "" } else { "s" }),
+        _ => format!("{total:.4} {}", amount.unit()),
     }
 }
 

@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use super::{
-    Case, CaseError, Commands, Defect, JourneyError, Prepared, SimulateError, dem_ground::dem_ground,
-    nodes::{coarse_nodes, level_hop_m, post_spacing_m}, pipeline::planned_over,
+    Case, CaseError, Commands, Defect, JourneyError, Prepared, SimulateError,
+    dem_ground::dem_ground,
+    nodes::{coarse_nodes, level_hop_m, post_spacing_m},
+    pipeline::planned_over,
 };
 use crate::{
     ballistics::PathBounds,

@@ -95,6 +95,7 @@ fn a_map_holds_at_most_the_bytes_that_it_states() {
             predecessors,
             trials: footprint.contains("trials"),
             hops_max: None,
+            amounts: Vec::new(),
             memory_max_bytes: None,
         };
         let peak = Peak::begin();

@@ -34,6 +34,7 @@ mod heading_steps;
 mod layers;
 mod map_equality;
 mod map_nodes;
+mod map_objectives;
 mod map_projection;
 mod map_replan;
 mod map_sources;

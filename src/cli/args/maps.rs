@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use chta::{quantity::MapPoint, terrain::LonLat};
+use chta::{planner::Amount, quantity::MapPoint, terrain::LonLat};
 use clap::Args as ClapArgs;
 
 use super::{AnswerArgs, CommonArgs, SearchArgs, lon_lat, map_point};
@@ -36,6 +36,24 @@ fn mebibytes(text: &str) -> Result<u64, String> {
 fn hop_count(text: &str) -> Result<i16, String> {
     let count = text.trim().parse().ok().filter(|count| *count >= 1);
     count.ok_or_else(|| format!("found `{text}`, expected a whole number of hops from 1 to {}, such as 10", i16::MAX))
+}
+
+/// An amount, and the file for its totals.
+#[derive(Clone, Debug)]
+pub(crate) struct AmountFile {
+    /// The amount.
+    pub(crate) amount: Amount,
+    /// The file.
+    pub(crate) file: PathBuf,
+}
+
+/// Reads an amount and a file.
+fn amount_file(text: &str) -> Result<AmountFile, String> {
+    let names = Amount::ALL.map(Amount::name).join(", ");
+    let wrong = || format!("found `{text}`, expected AMOUNT=FILE, such as energy=energy.tif, with one of {names}");
+    let (name, file) = text.split_once('=').filter(|(_, file)| !file.is_empty()).ok_or_else(wrong)?;
+    let amount = Amount::ALL.into_iter().find(|amount| amount.name() == name.trim()).ok_or_else(wrong)?;
+    Ok(AmountFile { amount, file: file.into() })
 }
 
 /// How fine the nodes of a map are.
@@ -145,6 +163,10 @@ pub(crate) struct MapArgs {
     #[arg(long, value_name = "EFFORT", num_args = 0..=1)]
     #[expect(clippy::option_option, reason = "absent, given alone, or with a value")]
     pub(crate) effort: Option<Option<String>>,
+    /// Least total of an amount to every post, then of others among equals, in place of fewest hops: hops, takeoff-speed, delta-v, energy,
+    /// flight-time, mission-time, distance, arc-length, last peak-speed [default: the scenario's, or hops]
+    #[arg(long, value_name = "AMOUNT[,AMOUNT]", value_delimiter = ',', conflicts_with = "effort")]
+    pub(crate) objective: Vec<String>,
     /// Search no farther than N hops; farther posts are reported as not searched [default: search all]
     #[arg(long, value_name = "N", value_parser = hop_count, allow_negative_numbers = true)]
     pub(crate) hops_max: Option<i16>,
@@ -157,6 +179,9 @@ pub(crate) struct MapArgs {
     /// Least effort (GeoTIFF) to write: float32, NaN where there is no path
     #[arg(long, value_name = "FILE", requires = "effort")]
     pub(crate) effort_output: Option<PathBuf>,
+    /// Total of an amount along the path to every post (GeoTIFF) to write: float32, NaN where there is no path; may be repeated
+    #[arg(long, value_name = "AMOUNT=FILE", value_parser = amount_file)]
+    pub(crate) amount_output: Vec<AmountFile>,
     /// Hops back to the nearest start (GeoTIFF) to write
     #[arg(long, value_name = "FILE", requires = "back")]
     pub(crate) return_output: Option<PathBuf>,

@@ -49,6 +49,9 @@ pub struct PostHops {
     pub(super) within_reach: Vec<usize>,
     /// Whether map coordinates are too coarse for fast arithmetic.
     coarse: bool,
+    /// Whether the clearance is kept at vertices of the slice alone, of which the finer surface has others: then fast arithmetic looks at the
+    /// bare ground, and the slice decides what that leaves.
+    pub(super) by_vertices: bool,
 }
 
 impl std::fmt::Debug for PostHops {
@@ -128,7 +131,10 @@ impl PostHops {
         let coarse = f64::EPSILON * largest_m > FINE * step_m;
         let table = OffsetTable::default();
         let within_reach = Vec::new();
-        let mut hops = Self { finer, scale, lattice, table, facets, overlays, footings, grip, within_reach, coarse, ground };
+        let clearance = ground.envelope().clearance();
+        let by_vertices = lattice.per_post > 1 && clearance.height_m() > 0.0 && !clearance.has_kinks();
+        let mut hops =
+            Self { finer, scale, lattice, table, facets, overlays, footings, grip, within_reach, coarse, by_vertices, ground };
         hops.set_reach()?;
         Ok(hops)
     }
@@ -292,7 +298,7 @@ impl PostHops {
         let Some(stands) = self.stands(from, offset, overlay) else { return Verdict::No };
         let Some((slopes, mut sure)) = self.cones(takeoff, landing, offset, overlay) else { return Verdict::No };
         sure &= stands;
-        sure &= overlay != Overlay::Mixed && !self.coarse;
+        sure &= overlay != Overlay::Mixed && !self.coarse && !self.by_vertices;
         let limits = self.ground.hopper().limits();
         let sight = LineOfSight::new(offset.run_m, rise_m);
         let lofts = self.envelope().lofts(

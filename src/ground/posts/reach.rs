@@ -8,7 +8,7 @@ use super::{
     samples::{HeightScale, Heights},
 };
 use crate::{
-    ballistics::{safety_ceiling_m, safety_range_m},
+    ballistics::{limits::ClearanceProfile, safety_ceiling_m, safety_range_m},
     ground::{DemGround, Surface},
     terrain::points,
     world::tolerant_speed_m_s,
@@ -79,7 +79,12 @@ impl Reach {
         if size.crossings > MOST_CROSSINGS {
             let posts = longest_m / spacing.dx_m.min(spacing.dy_m);
             if lattice.per_post > 1 {
-                return Err(MapError::TooFine { range_m: longest_m, nodes: posts, offsets: size.offsets, per_post: lattice.per_post });
+                return Err(MapError::TooFine {
+                    range_m: longest_m,
+                    nodes: posts,
+                    offsets: size.offsets,
+                    per_post: lattice.per_post,
+                });
             }
             let dem = ground.terrain().dem();
             let fits = |stride: &usize| {
@@ -161,7 +166,8 @@ impl PostHops {
             (-landing_m - slack_m, takeoff_m + slack_m)
         };
         let bounds = (self.lattice.rows, self.lattice.cols);
-        self.table = OffsetTable::new(spacing, longest_m, bounds, self.envelope().clearance(), rises_m);
+        let clearance = if self.by_vertices { ClearanceProfile::NONE } else { self.envelope().clearance() };
+        self.table = OffsetTable::new(spacing, longest_m, bounds, clearance, rises_m);
         let count = |range_m: &f64| self.table.offsets.partition_point(|offset| offset.run_m <= *range_m);
         self.within_reach = ranges_m.iter().map(count).collect();
         Ok(())

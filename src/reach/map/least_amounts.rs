@@ -80,7 +80,7 @@ pub fn least_totals(
     most: f64,
     progress: &dyn Progress,
 ) -> Result<LeastTotals, MapError> {
-    objective.check()?;
+    MapObjective::accepts(objective.objective())?;
     let meter = Meter::new(progress, Stage::MapLayers);
     meter.report(Detail::None)?;
     let search = Search::new(hops, objective, most);
@@ -177,6 +177,12 @@ impl Labels {
 }
 
 impl LeastTotals {
+    /// The paths, and for each amount of the objective its totals.
+    pub fn into_parts(self) -> (HopMap, Vec<Vec<f64>>) {
+        let totals = (0..self.amounts).map(|place| self.of(place)).collect();
+        (self.paths, totals)
+    }
+
     /// The total of the amount of this place in the objective at every node, row after row; NaN without a path.
     ///
     /// # Panics
@@ -392,7 +398,8 @@ mod tests {
 
     #[test]
     fn a_source_comes_before_every_hop_in_the_order_of_equals() {
-        let labels = Labels { amounts: 1, totals: vec![0.0], least: vec![AtomicU64::new(0)], previous: vec![NONE], nearest: vec![] };
+        let labels =
+            Labels { amounts: 1, totals: vec![0.0], least: vec![AtomicU64::new(0)], previous: vec![NONE], nearest: vec![] };
         assert_eq!(labels.compared(&[0.0; 4], (0, 0, 0)), Ordering::Greater);
         assert_eq!(labels.compared(&[0.0; 4], (0, 0, NONE)), Ordering::Equal);
     }

@@ -62,15 +62,23 @@ impl MapObjective {
         Self { objective: objective.clone(), choices, envelope, limits, speeds_m_s, bounds_by_lofts }
     }
 
+    /// The objective.
+    pub const fn objective(&self) -> &Objective {
+        &self.objective
+    }
+
     /// The amounts, the first first.
     pub fn amounts(&self) -> &[Amount] {
         self.objective.amounts()
     }
 
-    /// Refuses what is no sum over the hops of a map.
-    pub(super) fn check(&self) -> Result<(), MapError> {
-        let refused = if self.objective.first().adds_up() {
-            self.amounts().iter().find(|amount| **amount == Amount::Risk)
+    /// Refuses an objective of what is no sum over the hops of a map.
+    ///
+    /// # Errors
+    /// [`MapError::Request`] for risk, and for an amount that does not add up in the first place.
+    pub fn accepts(objective: &Objective) -> Result<(), MapError> {
+        let refused = if objective.first().adds_up() {
+            objective.amounts().iter().find(|amount| **amount == Amount::Risk)
         } else {
             Some(&Amount::PeakSpeed)
         };

@@ -59,11 +59,7 @@ fn hops_along(
 }
 
 /// The single hop over a slice; `None` if no hop joins the two nodes.
-fn hop_along(
-    test: &HopTest,
-    choice: TakeoffChoice,
-    wanted: impl Fn(LineOfSight, SlopeInterval) -> Option<f64>,
-) -> Option<HopPath> {
+fn hop_along(test: &HopTest, choice: TakeoffChoice, wanted: impl Fn(LineOfSight, SlopeInterval) -> Option<f64>) -> Option<HopPath> {
     let geometry = test.chain().geometry();
     let (takeoff, landing) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
     let lofts = test.lofts(&takeoff, &landing).ok()?;

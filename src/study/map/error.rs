@@ -2,7 +2,7 @@
 
 use super::super::{Defect, JourneyEnd, PipelineError};
 use crate::{
-    planner::TooManyNodes,
+    planner::{Amount, Objective, TooManyNodes, TotalBudget},
     quantity::MapPoint,
     reach::map::MapError,
     terrain::{MapBounds, TerrainError},
@@ -78,6 +78,32 @@ pub enum MapStudyError {
     /// More nodes than can be numbered.
     #[error(transparent)]
     Nodes(#[from] TooManyNodes),
+    /// A budget of another amount than the one that the map has least.
+    #[error(
+        "{} = {} limits the {}, but this map has the least {} first, and keeps a budget of that amount alone: put {} first in search.objective, \
+         or leave the budget out; a path from a start to one goal keeps any", budget.key, budget.most, budget.amount.words(),
+        first.words(), budget.amount
+    )]
+    OtherBudget {
+        /// The budget.
+        budget: TotalBudget,
+        /// What the map has least.
+        first: Amount,
+    },
+    /// A least effort among fewest hops beside an objective.
+    #[error(
+        "found an effort beside search.objective = {objective}, expected one of the two: an effort is the least among paths of fewest hops"
+    )]
+    EffortBesideObjective {
+        /// The objective.
+        objective: Objective,
+    },
+    /// Totals of risk, which no map counts.
+    #[error("found the totals of {amount} along the paths of a map, expected an amount of a hop by itself: any other")]
+    NoRisk {
+        /// The amount.
+        amount: Amount,
+    },
     /// The search.
     #[error(transparent)]
     Map(#[from] MapError),

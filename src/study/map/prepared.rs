@@ -10,8 +10,12 @@ use crate::{
     quantity::MapPoint,
     reach::map::{NodeLattice, Post},
     scenario::Scenario,
-    study::{DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body,
-        nodes::{coarse_nodes, level_hop_m, post_spacing_m}, pipeline::planned_over, with_measured_errors},
+    study::{
+        DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body,
+        nodes::{coarse_nodes, level_hop_m, post_spacing_m},
+        pipeline::planned_over,
+        with_measured_errors,
+    },
     terrain::{Dem, GeoReference, MapProjection, NoProjection, check_map_scale},
     uncertainty::Uncertainty,
 };
@@ -59,6 +63,7 @@ impl PreparedMap {
     /// [`MapStudyError`], also if the map needs more memory than the question allows: before the elevations are read if these alone do.
     pub fn new(question: &MapQuestion<'_>) -> Result<Self, MapStudyError> {
         let MapQuestion { scenario, base, dem: file, stride, .. } = question;
+        let aim = question.aim()?;
         if question.starts.is_empty() {
             return Err(MapStudyError::NoStart);
         }
@@ -89,6 +94,7 @@ impl PreparedMap {
             warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
         }
         warnings.extend(starts_of_no_post(&starts));
+        warnings.extend(question.propellant_warning(&aim));
         warnings.extend(question.node_warnings(&planning, lattice));
         let memory = MapMemory::of(question, &planning, lattice)?;
         memory.check(question.memory_max_bytes)?;

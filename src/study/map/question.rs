@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::{scenario::Scenario, terrain::MapPlace};
+use crate::{planner::Amount, scenario::Scenario, terrain::MapPlace};
 
 /// A position, and what the caller calls it in messages: a key, an option, or a line of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,8 +41,10 @@ pub struct MapQuestion<'a> {
     pub predecessors: bool,
     /// Also trials along the path to every goal.
     pub trials: bool,
-    /// Posts that need more hops are not searched.
+    /// Posts that need more hops are not searched; as a budget of hops.
     pub hops_max: Option<i16>,
+    /// Also the totals of these amounts along the path to every node.
+    pub amounts: Vec<Amount>,
     /// The most memory, bytes, that the map may need.
     pub memory_max_bytes: Option<u64>,
 }
