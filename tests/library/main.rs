@@ -37,6 +37,7 @@ mod map_nodes;
 mod map_objectives;
 mod map_projection;
 mod map_replan;
+mod map_slices;
 mod map_sources;
 mod map_verified;
 mod map_world;

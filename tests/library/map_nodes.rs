@@ -57,7 +57,7 @@ fn compare_pairs(world: &World, per_post: usize, what: &str) -> [usize; 2] {
 fn every_pair_of_finer_nodes_has_the_result_of_the_slice_between_them() {
     let mut draw = Draw::seeded(1721);
     let mut counts = [0; 2];
-    for number in 0..24 {
+    for number in 0..16 {
         let per_post = 1 + number % 4;
         let dem = random_dem(&mut draw, [8, 5, 5, 5][per_post - 1]);
         let (hopper, gravity) = random_hopper(&mut draw);
@@ -65,7 +65,7 @@ fn every_pair_of_finer_nodes_has_the_result_of_the_slice_between_them() {
         let found = compare_pairs(&world, per_post, &format!("grid {number}, {per_post} nodes a post"));
         counts = [counts[0] + found[0], counts[1] + found[1]];
     }
-    assert!(counts[0] > 20_000 && counts[1] > 20_000, "{counts:?} pairs apart and joined");
+    assert!(counts[0] > 10_000 && counts[1] > 10_000, "{counts:?} pairs apart and joined");
 }
 
 /// Nodes at twice as many places a post never cost a hop, and posts have those of a map of posts or fewer.

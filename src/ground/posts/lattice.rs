@@ -57,12 +57,15 @@ impl NodeLattice {
 
     /// Where a node lies on the map of the posts: exactly on the post where it is one.
     pub fn at(&self, posts: &GeoReference, node: Post) -> MapPoint {
-        posts.between_posts(self.per_post, (node.col * self.stride, node.row * self.stride))
+        let Post { row, col } = self.in_raster(node);
+        if self.per_post == 1 { posts.post(row, col) } else { posts.between_posts(self.per_post, (col, row)) }
     }
 
     /// A node on the triangulated DEM; `None` without elevation.
     pub fn position(&self, dem: &Dem, node: Post) -> Option<MapPosition> {
-        let z_m = dem.height_between_posts(self.per_post, (node.col * self.stride, node.row * self.stride))?;
+        let Post { row, col } = self.in_raster(node);
+        let z_m =
+            if self.per_post == 1 { dem.elevation(row, col) } else { dem.height_between_posts(self.per_post, (col, row)) }?;
         Some(MapPosition { at: self.at(dem.georeference(), node), z_m })
     }
 

@@ -72,7 +72,7 @@ struct Labels {
 /// [`MapError`]; [`MapError::Request`] for an objective of an amount that is no sum over the hops of a map.
 ///
 /// # Complexity
-/// One test for every pair within reach that the bound leaves; `8 k + 37` bytes for every node with `k` amounts, and some megabytes of offers.
+/// One test for every pair within reach that the bound leaves; `8 k + 53` bytes for every node with `k` amounts, and some megabytes of offers.
 pub fn least_totals(
     hops: &PostHops,
     sources: &[Post],
@@ -194,9 +194,10 @@ impl LeastTotals {
 
     /// The bytes of the search and its labels for each node.
     pub(crate) const fn bytes_per_node(amounts: usize, several: bool) -> usize {
-        // Totals, the least offered, the previous hop, hops, the mark of a reached node, the buckets, which grow to twice their length.
+        // Totals, the least offered, the previous hop, hops, the mark of a reached node, the buckets, which grow to twice their length; the
+        // hops while they are counted.
         let source = if several { size_of::<u32>() } else { 0 };
-        (amounts + 1) * size_of::<f64>() + size_of::<u32>() + 2 * size_of::<i16>() + 1 + 4 * size_of::<u32>() + source
+        (amounts + 3) * size_of::<f64>() + size_of::<u32>() + 2 * size_of::<i16>() + 1 + 4 * size_of::<u32>() + source
     }
 
     /// The bytes of the offers of one round, at most, where a node has so many others within reach.
@@ -221,9 +222,9 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     /// Nodes whose hops are offered at once: so many keep the threads busy, and so few that their offers take some megabytes.
-    const ROUND: usize = 1024;
+    const ROUND: usize = 256;
     /// Nodes of a round that one thread looks at in one go.
-    const PIECE: usize = 32;
+    const PIECE: usize = 16;
 
     fn new(hops: &'a PostHops, objective: &'a MapObjective, most: f64) -> Self {
         // No shorter hop over level ground exists; most of the steeper ones still lead out of a bucket of half of it.

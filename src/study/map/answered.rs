@@ -10,8 +10,8 @@ use super::{
 use crate::{
     ballistics::PathBounds,
     ground::Surface,
-    path::HopPath,
-    planner::{Amount, TotalBudget},
+    path::{Hop, HopPath},
+    planner::{Amount, Objective, TotalBudget},
     progress::Progress,
     reach::map::{
         HopMap, Journey, MapHop, MapObjective, Mobility, Post, PostHops, Search, Source, costs_to_go, joined, least_totals,
@@ -161,6 +161,7 @@ impl PreparedMap {
         let hops: Vec<_> = paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
         warnings.extend(constant_gravity_warnings(&scenario.body, Extremes::of(&hops)));
         warnings.extend(unplanned_bounces(&hops));
+        warnings.extend(self.short_hops(question, &hops));
         Ok(MapStudy { answer, warnings, out, back, mobility, predecessors, least, amounts, goal_hops, paths })
     }
 
@@ -236,6 +237,28 @@ impl PreparedMap {
             ))
         };
         self.starts.iter().chain(&self.goals).filter_map(refused).collect()
+    }
+
+    /// A warning where the nodes decide how short the hops of least energy are.
+    fn short_hops(&self, question: &MapQuestion<'_>, hops: &[Hop]) -> Option<String> {
+        /// The least number of nodes at which they do not decide.
+        const SPANNED: f64 = 3.0;
+        let first = question.scenario.objective.as_ref().map(Objective::first);
+        let is_prepared = question.scenario.hopper.limits().preparation_energy_j.is_some_and(|energy_j| energy_j > 0.0);
+        if first != Some(Amount::Energy) || is_prepared || hops.is_empty() {
+            return None;
+        }
+        let nodes = self.nodes();
+        let runs_m: f64 = hops.iter().map(|hop| hop.landing.along_m - hop.takeoff.along_m).sum();
+        #[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
+        let spanned = runs_m / (hops.len() as f64 * nodes.dx_m().max(nodes.dy_m()));
+        (spanned < SPANNED).then(|| {
+            format!(
+                "hops to the goals span {spanned:.1} nodes on average, expected at least {SPANNED}: without an energy to prepare a hop the \
+                 least energy is nearly the same whatever the hops, so that the nodes decide how short they are; put hops first, or give \
+                 hopper.preparation_energy_j"
+            )
+        })
     }
 
     /// The ground as the warnings about trials see it.
