@@ -35,6 +35,8 @@ pub(crate) enum Purpose {
         goals: bool,
         /// With least effort.
         effort: bool,
+        /// With totals of amounts along the paths.
+        amounts: bool,
         /// With trials along these paths.
         trials: bool,
         /// Whether the scenario's own start and goal count.
@@ -94,7 +96,7 @@ impl Purpose {
         Self::Trade,
         Self::Compare,
         Self::Fan,
-        Self::Map { goals: true, effort: true, trials: true, ends: ScenarioEnds::Ignored },
+        Self::Map { goals: true, effort: true, amounts: true, trials: true, ends: ScenarioEnds::Ignored },
     ];
 
     /// The command's name.
@@ -131,7 +133,8 @@ impl Purpose {
         let by_objective = amounts != Amounts::None && self.plans_by_objective();
         let weighs_risk = weighs_risk || (amounts == Amounts::WithRisk && by_objective);
         let by_success = success && matches!(self, Self::Require | Self::Trade);
-        let totals = matches!(self, Self::Plan | Self::Run | Self::Require | Self::Compare | Self::Map { goals: true, .. });
+        let of_map = matches!(self, Self::Map { goals: true, .. } | Self::Map { amounts: true, .. });
+        let totals = of_map || matches!(self, Self::Plan | Self::Run | Self::Require | Self::Compare);
         match (key.table, key.name) {
             (
                 "hopper",
@@ -154,11 +157,15 @@ impl Purpose {
             }
             ("terrain", "route") => !matches!(self, Self::Hop | Self::Fan | Self::Map { .. }),
             ("terrain", name) => !(on_a_dem && gives_way_to_a_dem(name)),
-            ("search", "points_per_segment" | "node_spacing_max_m") => !matches!(self, Self::Hop | Self::Map { .. }),
+            ("search", "points_per_segment") => !matches!(self, Self::Hop | Self::Map { .. }),
+            ("search", "node_spacing_max_m") => self != Self::Hop,
             ("search", "effort" | "takeoff_angle" | "split") if by_objective => true,
             ("search", "effort") => !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { effort: false, .. }),
             ("search", "takeoff_angle" | "split" | "risk" | "risk_extra_hops_max") if by_success => true,
-            ("search", "takeoff_angle") => !matches!(self, Self::Trade | Self::Fan | Self::Map { goals: false, effort: false, .. }),
+            ("search", "takeoff_angle") => {
+                by_objective
+                    || !matches!(self, Self::Trade | Self::Fan | Self::Map { goals: false, effort: false, amounts: false, .. })
+            }
             ("search", "split") => !on_a_dem && !matches!(self, Self::Hop | Self::Trade),
             // A robot that replans over a map weighs it.
             ("search", "risk") if matches!(self, Self::Map { trials: true, .. }) => true,
@@ -174,7 +181,7 @@ impl Purpose {
 
     /// Whether its paths are those of an objective within budgets, where the scenario has them.
     const fn plans_by_objective(self) -> bool {
-        matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Require | Self::Trade | Self::Compare)
+        !matches!(self, Self::Hop | Self::Fan)
     }
 
     /// Whether its hops have commands in the machine's steps.
@@ -265,7 +272,7 @@ impl Purpose {
         let users: Vec<&str> = Self::ALL.into_iter().filter(|purpose| purpose.uses(key, weighs)).map(Self::command).collect();
         let own = users.contains(&called.command());
         match (own, called) {
-            (true, Self::Map { .. }) => ": it is used with --goal, --effort or --simulate".to_owned(),
+            (true, Self::Map { .. }) => ": it is used with --goal, --effort, --amount-output or --simulate".to_owned(),
             _ => format!(": it is used by {}", users.join(", ")),
         }
     }
@@ -287,7 +294,7 @@ mod tests {
         for purpose in Purpose::ALL {
             assert!(offers(purpose.command(), "set") || purpose == Purpose::Run, "{purpose:?}");
         }
-        for option in ["goal", "effort", "simulate"] {
+        for option in ["goal", "effort", "amount-output", "simulate"] {
             assert!(offers("map", option), "map has no --{option}");
         }
     }

@@ -11,7 +11,7 @@ use chta::{
 
 use super::{
     Failure,
-    args::{MapArgs, SearchArgs},
+    args::{MapArgs, NodeSpacing, SearchArgs},
     claims,
     effects::Purpose,
     inputs,
@@ -38,16 +38,18 @@ impl MapInput {
         if *stride == 0 {
             return Err(Failure::message("--stride: found 0, expected a whole number of at least 1"));
         }
-        let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
+        let node_spacing_max_m = args.node_spacing_max_m.and_then(NodeSpacing::metres);
+        let searched = SearchArgs { points_per_segment: None, node_spacing_max_m, effort: effort.clone().flatten() };
         let has_start = args.starts.is_some() || !(args.start.is_empty() && args.start_lonlat.is_empty());
         let has_goal = !(args.goal.is_empty() && args.goal_lonlat.is_empty());
         let purpose = |ends| Purpose::Map {
             goals: has_goal || ends != ScenarioEnds::Ignored,
             effort: effort.is_some(),
+            amounts: !args.amount_output.is_empty(),
             trials: args.simulate,
             ends,
         };
-        let bare = load_map(dem, common, &searched, purpose, has_start)?;
+        let bare = load_map(dem, common, (&searched, &args.objective), purpose, has_start)?;
         let mut warnings = Vec::new();
         let starts = match (&args.starts, &bare.ends) {
             (Some(file), _) => of_file(file, &mut warnings)?,
@@ -80,12 +82,14 @@ impl MapInput {
             starts: self.starts.clone(),
             goals: self.goals.clone(),
             stride: args.stride as usize,
+            auto_nodes: args.node_spacing_max_m == Some(NodeSpacing::Auto),
             effort: args.effort.is_some(),
             returns: args.back,
             mobility: args.mobility.is_some(),
             predecessors: args.predecessor_output.is_some(),
             trials: args.simulate,
             hops_max: args.hops_max,
+            amounts: args.amount_output.iter().map(|output| output.amount).collect(),
             memory_max_bytes: args.size.memory_max_bytes(),
         }
     }

@@ -107,6 +107,27 @@ impl Amount {
         if self.adds_up() { first + second } else { first.max(second) }
     }
 
+    /// That of one hop along an arc, as [`Amounts::of_arc`] gives it.
+    pub fn of_arc(self, arc: &Arc, limits: &HopperLimits, is_first: bool) -> f64 {
+        match self {
+            Self::Hops => 1.0,
+            Self::TakeoffSpeed | Self::PeakSpeed => arc.takeoff_speed_m_s(),
+            Self::DeltaV => delta_v_m_s(arc, limits),
+            Self::Energy => {
+                let speed_m_s = arc.takeoff_speed_m_s();
+                limits.store_energy_j_kg(0.5 * speed_m_s * speed_m_s, 1)
+            }
+            Self::FlightTime => arc.flight_time_s(),
+            Self::MissionTime => {
+                let settling_s = if is_first { 0.0 } else { limits.settling_s().unwrap_or(0.0) };
+                settling_s + limits.preparation_time_s.unwrap_or(0.0) + arc.flight_time_s()
+            }
+            Self::Distance => arc.line_of_sight().run_m(),
+            Self::ArcLength => arc.length_m(),
+            Self::Risk => 0.0,
+        }
+    }
+
     const fn index(self) -> usize {
         self as usize
     }
@@ -144,19 +165,7 @@ impl Amounts {
     /// assert!((later.of(Amount::MissionTime) - (7.0 + 2f64.sqrt())).abs() < 1e-12);
     /// ```
     pub fn of_arc(arc: &Arc, limits: &HopperLimits, is_first: bool) -> Self {
-        let speed_m_s = arc.takeoff_speed_m_s();
-        let flight_s = arc.flight_time_s();
-        let settling_s = if is_first { 0.0 } else { limits.settling_s().unwrap_or(0.0) };
-        Self::NONE
-            .with(Amount::Hops, 1.0)
-            .with(Amount::TakeoffSpeed, speed_m_s)
-            .with(Amount::DeltaV, delta_v_m_s(arc, limits))
-            .with(Amount::Energy, limits.store_energy_j_kg(0.5 * speed_m_s * speed_m_s, 1))
-            .with(Amount::FlightTime, flight_s)
-            .with(Amount::MissionTime, settling_s + limits.preparation_time_s.unwrap_or(0.0) + flight_s)
-            .with(Amount::Distance, arc.line_of_sight().run_m())
-            .with(Amount::ArcLength, arc.length_m())
-            .with(Amount::PeakSpeed, speed_m_s)
+        Amount::ALL.into_iter().fold(Self::NONE, |amounts, amount| amounts.with(amount, amount.of_arc(arc, limits, is_first)))
     }
 
     /// One of them.

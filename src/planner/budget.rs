@@ -82,7 +82,7 @@ impl Budgets {
     }
 
     /// The total from which on an amount is too much.
-    pub(super) fn allowed(&self, amount: Amount) -> f64 {
+    pub(crate) fn allowed(&self, amount: Amount) -> f64 {
         self.most(amount) * (1.0 + Self::TOLERANCE)
     }
 

@@ -3,7 +3,7 @@
 use crate::{
     ground::MapPosition,
     quantity::MapPoint,
-    terrain::{Dem, GeoReference},
+    terrain::{Dem, GeoReference, points},
 };
 
 /// The most nodes a post spacing that are chosen automatically: nodes grow with its square, pairs of nodes with its fourth power.
@@ -63,8 +63,7 @@ impl SurfaceLattice {
     /// The lattice over a DEM.
     pub fn new(dem: &Dem, n: NodesPerPost) -> Self {
         let n = n.get() as usize;
-        let count = |posts: usize| (posts - 1).saturating_mul(n).saturating_add(1);
-        Self { map: dem.georeference().clone(), n, rows: count(dem.rows()), cols: count(dem.cols()) }
+        Self { map: dem.georeference().clone(), n, rows: points(dem.rows(), n), cols: points(dem.cols(), n) }
     }
 
     /// How many nodes it has.
@@ -126,43 +125,13 @@ impl SurfaceLattice {
     }
 
     /// Where a node lies on the map: exactly on the post where it is one.
-    #[expect(clippy::cast_precision_loss, reason = "counts of nodes stay far below 2^53")]
-    pub fn at(&self, (i, j): (usize, usize)) -> MapPoint {
-        let north_west = self.map.north_west();
-        let along = |k: usize, step_m: f64| {
-            if k.is_multiple_of(self.n) { (k / self.n) as f64 * step_m } else { k as f64 / self.n as f64 * step_m }
-        };
-        MapPoint::new(north_west.x + along(i, self.map.dx_m()), north_west.y - along(j, self.map.dy_m()))
+    pub fn at(&self, node: (usize, usize)) -> MapPoint {
+        self.map.between_posts(self.n, node)
     }
 
-    /// A node on the ground; `None` where its facet, or every facet that meets there, has no elevation.
-    ///
-    /// ```text
-    ///   (0, 0) +-----+ (n, 0)      a = i mod n, b = j mod n within the square of four posts
-    ///          | \   |             a > b: the north-eastern facet;  a < b: the south-western one;  a = b: the diagonal edge
-    ///          |   \ |             a = 0 or b = 0: an edge of the grid;  both: a post
-    ///   (0, n) +-----+ (n, n)
-    /// ```
-    #[expect(clippy::cast_precision_loss, reason = "counts of nodes stay far below 2^53")]
-    pub fn position(&self, dem: &Dem, (i, j): (usize, usize)) -> Option<MapPosition> {
-        let (col, row, a, b) = (i / self.n, j / self.n, i % self.n, j % self.n);
-        let post = |down: usize, across: usize| dem.elevation(row + down, col + across);
-        let share = |k: usize| k as f64 / self.n as f64;
-        let z_m = match (a, b) {
-            (0, 0) => post(0, 0)?,
-            (_, 0) => between(post(0, 0)?, post(0, 1)?, share(a)),
-            (0, _) => between(post(0, 0)?, post(1, 0)?, share(b)),
-            _ if a == b => between(post(0, 0)?, post(1, 1)?, share(a)),
-            _ if a > b => {
-                let (corner, east, south_east) = (post(0, 0)?, post(0, 1)?, post(1, 1)?);
-                corner + (east - corner) * share(a) + (south_east - east) * share(b)
-            }
-            _ => {
-                let (corner, south, south_east) = (post(0, 0)?, post(1, 0)?, post(1, 1)?);
-                corner + (south - corner) * share(b) + (south_east - south) * share(a)
-            }
-        };
-        Some(MapPosition { at: self.at((i, j)), z_m })
+    /// A node on the ground ([`Dem::height_between_posts`]); `None` where its facet, or every facet that meets there, has no elevation.
+    pub fn position(&self, dem: &Dem, node: (usize, usize)) -> Option<MapPosition> {
+        dem.height_between_posts(self.n, node).map(|z_m| MapPosition { at: self.at(node), z_m })
     }
 
     /// Whether a straight line between two nodes runs along edges of the triangulated DEM.
@@ -191,11 +160,6 @@ impl SurfaceLattice {
         let (cols, rows) = (range(away.x, self.map.dx_m(), self.cols), range(-away.y, self.map.dy_m(), self.rows));
         rows.flat_map(move |j| cols.clone().map(move |i| (i, j)))
     }
-}
-
-/// On the straight line from one height to another; exact at both ends.
-fn between(from_z_m: f64, to_z_m: f64, share: f64) -> f64 {
-    from_z_m + (to_z_m - from_z_m) * share
 }
 
 #[cfg(test)]

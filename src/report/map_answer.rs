@@ -6,11 +6,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    DeratingRecord, HopRecord, PropellantShortage, SimulationRecord, TotalsRecord, propellant_record::stores_lines, stated::stated,
-    text::hops_bound,
+    AmountRecord, DeratingRecord, HopRecord, PropellantShortage, SimulationRecord, TotalsRecord, propellant_record::stores_lines,
+    stated::stated, text::hops_bound,
 };
 use crate::{
     graph::{Effort, EffortUnit},
+    planner::Amount,
     quantity::MapPoint,
     reach::map::{HopMap, Mobility, NO_GROUND, NOT_SEARCHED, NodeLattice, Post, SECTORS},
     terrain::Dem,
@@ -21,6 +22,9 @@ use crate::{
 pub struct MapAnswer {
     /// Every `stride`-th post of the DEM is a post of the map.
     pub stride: usize,
+    /// Nodes for each post spacing, where the nodes of the map are finer than the posts; what is said of posts is then said of nodes.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub nodes_per_post: usize,
     /// Posts of the map.
     pub posts: usize,
     /// Of these, posts without elevation.
@@ -53,6 +57,12 @@ pub struct MapAnswer {
     /// The second criterion, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effort: Option<MapEffortRecord>,
+    /// What the paths have least, if that is not the number of hops; "hops" are then those of the path found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub objective: Option<MapObjectiveRecord>,
+    /// The greatest total of each amount that was asked for, along the paths found.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub amounts: Vec<AmountRecord>,
     /// The return journeys, if requested.
     #[serde(rename = "return", skip_serializing_if = "Option::is_none")]
     pub back: Option<ReturnRecord>,
@@ -88,6 +98,29 @@ pub struct MapEffortRecord {
     pub unit: EffortUnit,
     /// The greatest effort of any reachable post.
     pub greatest: f64,
+}
+
+/// What the paths of a map have least.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MapObjectiveRecord {
+    /// The amounts: the first is least, each other breaks the ties of those before.
+    pub amounts: Vec<Amount>,
+    /// The greatest total of each at any reached node.
+    pub greatest: Vec<AmountRecord>,
+    /// The greatest total of the first within which nodes count as reached, if it is bounded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub budget: Option<MapBudgetRecord>,
+}
+
+/// The bound of a map on the first amount of its objective.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MapBudgetRecord {
+    /// Of which amount.
+    pub amount: Amount,
+    /// What sets it.
+    pub key: String,
+    /// The greatest total, in the unit of the amount.
+    pub max: f64,
 }
 
 /// Paths back to the nearest start.
@@ -136,6 +169,9 @@ pub struct GoalRecord {
     pub hops_lower_bound: Option<u64>,
     /// False if the search ended at its bound of hops before the goal, so that it is not known whether it can be reached.
     pub searched: bool,
+    /// The totals of the path in all amounts of the objective of the map; empty where it has none, or without a path.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub objective_totals: Vec<AmountRecord>,
     /// Fewest hops back; absent if not requested, null: no path.
     #[serde(default, deserialize_with = "stated", skip_serializing_if = "Option::is_none")]
     pub return_hops: Option<Option<i16>>,
@@ -178,7 +214,7 @@ impl MapAnswer {
     /// The summary of the maps; the caller adds the goals, and the shares of the limits.
     pub fn new(summary: &MapSummary<'_>) -> Self {
         let MapSummary { dem, lattice, out, .. } = *summary;
-        let map = dem.georeference().every(lattice.stride);
+        let map = lattice.map(dem.georeference());
         let starts = start_records(summary, &map);
         let first = starts.first().copied();
         let reachable = |index: usize| out.hops[index] >= 0;
@@ -199,6 +235,7 @@ impl MapAnswer {
         let reachable_area_m2 = reachable_posts as f64 * map.dx_m() * map.dy_m();
         Self {
             stride: lattice.stride,
+            nodes_per_post: lattice.per_post,
             posts: lattice.count(),
             no_data_posts: out.hops.iter().filter(|&&hops| hops == NO_GROUND).count(),
             start_m: first.map_or([0.0; 2], |start| [start.x_m, start.y_m]),
@@ -219,6 +256,8 @@ impl MapAnswer {
                 unit: effort.unit(),
                 greatest: out.effort.iter().copied().fold(0.0, f64::max),
             }),
+            objective: None,
+            amounts: Vec::new(),
             back: summary.back.map(|back| ReturnRecord {
                 return_posts: back.hops.iter().filter(|&&hops| hops >= 0).count(),
                 round_trip_posts: out.hops.iter().zip(&back.hops).filter(|&(&there, &back)| there >= 0 && back >= 0).count(),
@@ -238,6 +277,11 @@ impl MapAnswer {
         }
     }
 
+    /// What the map has answers for, in words: a post, or a node of a lattice that is finer than the posts.
+    pub const fn node(&self) -> &'static str {
+        if self.nodes_per_post > 1 { "node" } else { "post" }
+    }
+
     /// Whether every goal is reachable by a path that the machine can fly.
     pub fn reaches_all_goals(&self) -> bool {
         self.goals.iter().all(|goal| goal.hops.is_some() && goal.propellant_shortage.is_none())
@@ -245,16 +289,18 @@ impl MapAnswer {
 
     /// The answer as text.
     pub fn text(&self) -> String {
+        let node = self.node();
         let mut text = format!(
-            "{} of {} posts reachable from {}, {:.6} km2, in at most {}\n",
+            "{} of {} {node}s reachable from {}, {:.6} km2, {} at most {}\n",
             self.reachable_posts,
             self.posts,
             self.from(),
             self.reachable_area_m2 * 1.0e-6,
+            if self.objective.is_some() { "by paths of" } else { "in" },
             format_hops(self.farthest_hops)
         );
         let beside = format!(
-            "{} reachable post{} on the map's border, {} beside no-data",
+            "{} reachable {node}{} on the map's border, {} beside no-data",
             self.reachable_posts_at_border,
             if self.reachable_posts_at_border == 1 { "" } else { "s" },
             self.reachable_posts_at_no_data
@@ -266,17 +312,23 @@ impl MapAnswer {
             for (number, StartRecord { x_m, y_m, offset_m, nearest_posts }) in (1..).zip(&self.starts) {
                 let _ = writeln!(
                     text,
-                    "start {number} ({x_m:.3}, {y_m:.3}) m, {offset_m:.3} m from the given place: nearest to {nearest_posts} post{}",
+                    "start {number} ({x_m:.3}, {y_m:.3}) m, {offset_m:.3} m from the given place: nearest to {nearest_posts} {node}{}",
                     if *nearest_posts == 1 { "" } else { "s" }
                 );
             }
             let _ = writeln!(text, "{beside}");
         }
+        if self.nodes_per_post > 1 {
+            let _ = writeln!(text, "nodes: {} for each post spacing", self.nodes_per_post);
+        }
         if let Some(derating) = &self.derating {
             let _ = writeln!(text, "{}", derating.sentence());
         }
         if let (Some(most), Some(posts)) = (self.hops_max, self.not_searched_posts) {
-            let _ = writeln!(text, "{}", not_searched(most, posts));
+            let _ = writeln!(text, "{}", not_searched(most, posts, node));
+        }
+        for line in self.objective_lines() {
+            let _ = writeln!(text, "{line}");
         }
         if let Some(MapEffortRecord { kind, unit, greatest }) = &self.effort {
             let _ = writeln!(text, "{}: at most {greatest:.4} {unit}", kind.total());
@@ -284,7 +336,7 @@ impl MapAnswer {
         if let Some(back) = &self.back {
             let _ = writeln!(
                 text,
-                "return: {} can be reached again from {} posts, {} of them reachable, in at most {}",
+                "return: {} can be reached again from {} {node}s, {} of them reachable, in at most {}",
                 if self.starts.len() > 1 { "a start" } else { "the start" },
                 back.return_posts,
                 back.round_trip_posts,
@@ -294,7 +346,7 @@ impl MapAnswer {
         if let Some(mobility) = &self.mobility {
             let _ = writeln!(
                 text,
-                "mobility: one hop reaches {:.1} % of the posts within {:.3} m on average; most at ({:.3}, {:.3}) m: {:.1} %, in {} of {} directions",
+                "mobility: one hop reaches {:.1} % of the {node}s within {:.3} m on average; most at ({:.3}, {:.3}) m: {:.1} %, in {} of {} directions",
                 100.0 * mobility.mean_share,
                 mobility.disc_radius_m,
                 mobility.best_m[0],
@@ -308,7 +360,7 @@ impl MapAnswer {
             text.push_str(&self.goal_text(goal));
         }
         if !self.hops_histogram.is_empty() {
-            let _ = writeln!(text, "\n{:>6}{:>12}", "hops", "posts");
+            let _ = writeln!(text, "\n{:>6}{:>12}", "hops", format!("{node}s"));
         }
         for (first, last, posts) in histogram_rows(&self.hops_histogram) {
             let hops = if first == last { first.to_string() } else { format!("{first}-{last}") };
@@ -326,12 +378,36 @@ impl MapAnswer {
         text
     }
 
+    /// What the paths have least, what bounds it, and the totals that were asked for.
+    fn objective_lines(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if let Some(MapObjectiveRecord { amounts, greatest, budget }) = &self.objective {
+            for (place, AmountRecord { amount, total }) in greatest.iter().enumerate() {
+                let then = if place == 0 { "" } else { "then " };
+                lines.push(format!("{then}least {}: at most {}", amount.words(), with_unit(*total, *amount)));
+            }
+            if let (Some(first), Some(MapBudgetRecord { key, max, .. })) = (amounts.first(), budget) {
+                let (most, node) = (with_unit(*max, *first), self.node());
+                lines.push(format!("within {most} ({key}): a {node} beyond counts as not searched"));
+            }
+        }
+        let along = |AmountRecord { amount, total }: &AmountRecord| {
+            format!("{} along the paths: at most {}", amount.words(), with_unit(*total, *amount))
+        };
+        lines.extend(self.amounts.iter().map(along));
+        lines
+    }
+
     /// How many hops a goal is away, and what bounds them.
     fn goal_text(&self, goal: &GoalRecord) -> String {
         let mut text = String::new();
         // Writing to a String cannot fail.
         let unreached = match self.hops_max {
             Some(most) if !goal.searched => format!("not within {}, and not searched beyond", format_hops(most)),
+            None if !goal.searched => match self.objective.as_ref().and_then(|objective| objective.budget.as_ref()) {
+                Some(budget) => format!("not within {}, and not searched beyond", with_unit(budget.max, budget.amount)),
+                None => "not searched".to_owned(),
+            },
             _ => "not reached over these nodes".to_owned(),
         };
         let from = goal.start.filter(|_| self.starts.len() > 1).map_or(String::new(), |number| format!(" from start {number}"));
@@ -346,6 +422,10 @@ impl MapAnswer {
         if let Some(lower) = goal.hops_lower_bound.filter(|_| goal.hops.is_some() || goal.searched) {
             let _ = writeln!(text, "  {}", hops_bound(goal.hops.map(i16::unsigned_abs).map(u64::from), lower));
         }
+        for (place, AmountRecord { amount, total }) in goal.objective_totals.iter().enumerate() {
+            let least = if place == 0 { "least " } else { "" };
+            let _ = writeln!(text, "  {least}{}: {}", amount.words(), with_unit(*total, *amount));
+        }
         for line in goal.totals.iter().flat_map(stores_lines) {
             let _ = writeln!(text, "  {line}");
         }
@@ -356,13 +436,32 @@ impl MapAnswer {
     }
 }
 
+/// A total with its unit.
+fn with_unit(total: f64, amount: Amount) -> String {
+    match amount {
+        Amount::Hops => format!("{total} hop{}", if total == 1.0 { "" } else { "s" }),
+        _ => format!("{total:.4} {}", amount.unit()),
+    }
+}
+
+/// Nodes for each post spacing where they are the posts.
+const fn one() -> usize {
+    1
+}
+
+/// Whether the nodes are the posts.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+const fn is_one(nodes_per_post: &usize) -> bool {
+    *nodes_per_post == 1
+}
+
 /// What a bounded search has left open.
-fn not_searched(most: i16, posts: usize) -> String {
+fn not_searched(most: i16, posts: usize, node: &str) -> String {
     if posts == 0 {
-        return format!("searched up to {}; no post is farther", format_hops(most));
+        return format!("searched up to {}; no {node} is farther", format_hops(most));
     }
     let s = if posts == 1 { "" } else { "s" };
-    format!("searched up to {}: {posts} other post{s} may be farther, or unreachable, and were not searched", format_hops(most))
+    format!("searched up to {}: {posts} other {node}{s} may be farther, or unreachable, and were not searched", format_hops(most))
 }
 
 /// The starts, with the posts that are nearest to each.

@@ -49,7 +49,10 @@ pub use hop_answer::{
 pub use hop_margins::HopMarginsRecord;
 pub use limit_counts::LimitCounts;
 pub use limit_pair::LimitPair;
-pub use map_answer::{GoalRecord, MapAnswer, MapEffortRecord, MapSummary, MobilityRecord, ReturnRecord, StartRecord};
+pub use map_answer::{
+    GoalRecord, MapAnswer, MapBudgetRecord, MapEffortRecord, MapObjectiveRecord, MapSummary, MobilityRecord, ReturnRecord,
+    StartRecord,
+};
 pub use objective_record::{AmountRecord, BudgetRecord, ObjectiveRecord};
 pub use path_record::{
     AimRecord, EnergyBasis, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv,

@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use super::{
-    Case, CaseError, Commands, Defect, JourneyError, Prepared, SimulateError, dem_ground::dem_ground, objective,
+    Case, CaseError, Commands, Defect, JourneyError, Prepared, SimulateError,
+    dem_ground::dem_ground,
+    nodes::{coarse_nodes, level_hop_m, post_spacing_m},
+    objective,
     pipeline::planned_over,
 };
 use crate::{
@@ -158,7 +161,7 @@ impl FreeSearch {
     fn warnings(&self, path: Option<&RoutePath>) -> Vec<String> {
         let scenario = &self.case.scenario;
         let mut warnings = left_out(scenario);
-        warnings.extend(coarse_nodes(&self.ground, self.nodes.lattice().spacing_m()));
+        warnings.extend(coarse_nodes(&self.ground, "the free route", self.nodes.lattice().spacing_m()));
         if scenario.plans_by_objective() {
             #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
             let spanned =
@@ -248,7 +251,7 @@ fn planning_ground(case: &Case) -> Result<DemGround, FreeRouteError> {
 /// The lattice as fine as the scenario says, start and goal, and the nodes of the straight slice between them.
 fn nodes(case: &Case, ground: &DemGround, ends: [MapPoint; 2]) -> Result<SurfaceNodes, JourneyError> {
     let (dem, chain) = (ground.terrain().dem(), &case.planning().chain);
-    let post_spacing_m = dem.georeference().dx_m().max(dem.georeference().dy_m());
+    let post_spacing_m = post_spacing_m(ground);
     let n = match case.scenario.search.spacing {
         Some(PointSpacing::AtMostM(spacing_m)) => NodesPerPost::at_most_m(spacing_m, post_spacing_m),
         Some(PointSpacing::PerSegment(_)) | None => NodesPerPost::auto(level_hop_m(ground), post_spacing_m),
@@ -259,13 +262,6 @@ fn nodes(case: &Case, ground: &DemGround, ends: [MapPoint; 2]) -> Result<Surface
     let of_slice = NodeSet::of_chain(chain, PointSpacing::AtMostM(lattice.spacing_m())).map_err(SearchError::from)?;
     let places = of_slice.stations().iter().filter_map(|station| chain.geometry().map_point(station));
     SurfaceNodes::new(ground, lattice, ends.into_iter().chain(places)).map_err(|error| RouteError::from(error).into())
-}
-
-/// How far one hop goes over level ground at most, by the speeds, m.
-fn level_hop_m(ground: &DemGround) -> f64 {
-    let limits = ground.hopper().limits();
-    let speed_m_s = limits.takeoff_speed_max_m_s.min(limits.arc_landing_speed_max_m_s());
-    speed_m_s / ground.gravity_m_s2() * speed_m_s
 }
 
 fn lower_bound(ground: &DemGround, ends: [MapPoint; 2]) -> Option<u64> {
@@ -295,18 +291,6 @@ fn record(nodes: &SurfaceNodes, route: &FreeRoute) -> RouteRecord {
             without_ground: gap.without_ground,
         }),
     }
-}
-
-/// A warning where one hop spans few nodes.
-fn coarse_nodes(ground: &DemGround, node_spacing_m: f64) -> Option<String> {
-    const FEW: f64 = 8.0;
-    let spans = level_hop_m(ground) / node_spacing_m;
-    (spans < FEW).then(|| {
-        format!(
-            "one hop over level ground spans {spans:.1} nodes of the free route, {node_spacing_m} m apart, fewer than 8: a smaller \
-             search.node_spacing_max_m may save hops"
-        )
-    })
 }
 
 /// The same case over the chain along the places of a route: one slice from each to the next, unrolled.

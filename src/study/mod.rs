@@ -31,6 +31,7 @@ mod hop;
 mod journey;
 pub mod map;
 mod measured;
+mod nodes;
 mod objective;
 mod on_body;
 mod physics;

@@ -215,6 +215,14 @@ impl GeoReference {
         Self { dx_m: self.dx_m * step, dy_m: self.dy_m * step, ..self.clone() }
     }
 
+    /// The position of a raster with `n` posts in place of one, on the same north-west post.
+    #[must_use]
+    pub fn finer(&self, n: usize) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "counts of points stay far below 2^53")]
+        let n = n.max(1) as f64;
+        Self { dx_m: self.dx_m / n, dy_m: self.dy_m / n, ..self.clone() }
+    }
+
     /// The same with the code of the map in its name, as GDAL shows it, where only the name can hold it: a code of the IAU.
     #[must_use]
     pub fn citing_the_code(self) -> Self {

@@ -19,6 +19,7 @@
 mod ascii_grid;
 mod dem;
 mod error;
+mod finer;
 mod footprint;
 mod foreign;
 mod format;
@@ -50,6 +51,7 @@ mod zones;
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
 pub use dem::{Dem, ELEVATION_LIMIT_M, Samples};
 pub use error::{AsciiProblem, GapCause, TerrainError};
+pub(crate) use finer::points;
 pub use footprint::{FootprintFit, FootprintGap};
 pub(crate) use foreign::{Foreign, Group as ForeignGroup, name as foreign_kind};
 pub(crate) use format::format_name as raster_format;

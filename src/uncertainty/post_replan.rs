@@ -50,7 +50,7 @@ impl Window {
 impl Posts {
     fn new(ground: &DemGround, lattice: NodeLattice) -> Self {
         let dem = ground.terrain().dem();
-        let map = dem.georeference().every(lattice.stride);
+        let map = lattice.map(dem.georeference());
         Self { reach: HopReach::of(ground), ground: ground.clone(), lattice, map }
     }
 
@@ -70,9 +70,7 @@ impl Posts {
 
     /// The line to a post; `None` if no hop can span it, or if the post has no elevation.
     fn line(&self, from: &MapPosition, post: Post) -> Option<Line> {
-        let Post { row, col } = self.lattice.post(post);
-        let z_m = self.ground.terrain().dem().elevation(row, col)?;
-        let target = MapPosition { at: self.map.post(post.row, post.col), z_m };
+        let target = self.lattice.position(self.ground.terrain().dem(), post)?;
         let (sight, heading) = self.reach.sight(&self.ground, from, &target)?;
         Some(Line { post, target, sight, heading })
     }

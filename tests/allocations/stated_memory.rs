@@ -77,6 +77,9 @@ fn a_map_holds_at_most_the_bytes_that_it_states() {
         (6.0, "clearance_m = 0.2\n", 1, [true, false, false, true], 1),
         (4.0, "footprint_m = 3.0\n", 1, [false, true, false, false], 2),
         (9.0, "", 3, [true; 4], 3),
+        // Nodes finer than posts, and least totals.
+        (4.0, "[search]\nnode_spacing_max_m = 0.5\n", 1, [false, true, false, true], 1),
+        (4.0, "[search]\nobjective = [\"energy\", \"hops\"]\n", 1, [false; 4], 3),
         // Replanned trials, by costs and by risks.
         (4.0, "[uncertainty]\ntrials = 20\n", 1, [false; 4], 1),
         (4.0, "[uncertainty]\ntrials = 20\ntakeoff_speed_sigma_fraction = 0.02\n", 1, [true, false, false, false], 1),
@@ -95,6 +98,7 @@ fn a_map_holds_at_most_the_bytes_that_it_states() {
             predecessors,
             trials: footprint.contains("trials"),
             hops_max: None,
+            amounts: Vec::new(),
             memory_max_bytes: None,
         };
         let peak = Peak::begin();

@@ -99,7 +99,22 @@ const SLICE: [Trial; 8] = [
     ),
 ];
 
-const MAP: [Trial; 27] = [
+const MAP: [Trial; 30] = [
+    (
+        "--objective",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--objective", "energy,hops"],
+    ),
+    (
+        "--amount-output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--amount-output", "flight-time=t.tif"],
+    ),
+    (
+        "--node-spacing-max-m",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--node-spacing-max-m", "0.5"],
+    ),
     (
         "--nearest-output",
         &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use chta::{quantity::MapPoint, terrain::LonLat};
+use chta::{planner::Amount, quantity::MapPoint, terrain::LonLat};
 use clap::Args as ClapArgs;
 
 use super::{AnswerArgs, CommonArgs, SearchArgs, lon_lat, map_point};
@@ -36,6 +36,54 @@ fn mebibytes(text: &str) -> Result<u64, String> {
 fn hop_count(text: &str) -> Result<i16, String> {
     let count = text.trim().parse().ok().filter(|count| *count >= 1);
     count.ok_or_else(|| format!("found `{text}`, expected a whole number of hops from 1 to {}, such as 10", i16::MAX))
+}
+
+/// An amount, and the file for its totals.
+#[derive(Clone, Debug)]
+pub(crate) struct AmountFile {
+    /// The amount.
+    pub(crate) amount: Amount,
+    /// The file.
+    pub(crate) file: PathBuf,
+}
+
+/// Reads an amount and a file.
+fn amount_file(text: &str) -> Result<AmountFile, String> {
+    let names = Amount::ALL.map(Amount::name).join(", ");
+    let wrong = || format!("found `{text}`, expected AMOUNT=FILE, such as energy=energy.tif, with one of {names}");
+    let (name, file) = text.split_once('=').filter(|(_, file)| !file.is_empty()).ok_or_else(wrong)?;
+    let amount = Amount::ALL.into_iter().find(|amount| amount.name() == name.trim()).ok_or_else(wrong)?;
+    Ok(AmountFile { amount, file: file.into() })
+}
+
+/// How fine the nodes of a map are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum NodeSpacing {
+    /// As fine as one hop wants.
+    Auto,
+    /// At most this far apart, m.
+    AtMostM(f64),
+}
+
+impl NodeSpacing {
+    /// The greatest distance of neighbours, m.
+    pub(crate) const fn metres(self) -> Option<f64> {
+        match self {
+            Self::Auto => None,
+            Self::AtMostM(spacing_m) => Some(spacing_m),
+        }
+    }
+}
+
+/// Reads a spacing of nodes; its range is that of the key.
+fn node_spacing(text: &str) -> Result<NodeSpacing, String> {
+    match text.trim() {
+        "auto" => Ok(NodeSpacing::Auto),
+        other => other
+            .parse()
+            .map(NodeSpacing::AtMostM)
+            .map_err(|_| format!("found `{text}`, expected a number of metres above 0, such as 1.25, or auto")),
+    }
 }
 
 /// Slices in all directions from one point: how far and in how few hops one gets in each
@@ -107,10 +155,18 @@ pub(crate) struct MapArgs {
     /// Land only on every N-th post; hops are always tested against the full DEM
     #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
     pub(crate) stride: u32,
+    /// Instead, nodes finer than posts: greatest spacing of neighbouring nodes, m, or auto: as fine as one hop wants, 8 nodes long
+    /// [default: the scenario's, or posts]
+    #[arg(long, value_name = "D|auto", value_parser = node_spacing, conflicts_with = "stride", allow_negative_numbers = true)]
+    pub(crate) node_spacing_max_m: Option<NodeSpacing>,
     /// Also least effort among paths of fewest hops: takeoff-speed, energy, time, peak-speed [default: none; alone: the scenario's]
     #[arg(long, value_name = "EFFORT", num_args = 0..=1)]
     #[expect(clippy::option_option, reason = "absent, given alone, or with a value")]
     pub(crate) effort: Option<Option<String>>,
+    /// Least total of an amount to every post, then of others among equals, in place of fewest hops: hops, takeoff-speed, delta-v, energy,
+    /// flight-time, mission-time, distance, arc-length, last peak-speed [default: the scenario's, or hops]
+    #[arg(long, value_name = "AMOUNT[,AMOUNT]", value_delimiter = ',', conflicts_with = "effort")]
+    pub(crate) objective: Vec<String>,
     /// Search no farther than N hops; farther posts are reported as not searched [default: search all]
     #[arg(long, value_name = "N", value_parser = hop_count, allow_negative_numbers = true)]
     pub(crate) hops_max: Option<i16>,
@@ -123,6 +179,9 @@ pub(crate) struct MapArgs {
     /// Least effort (GeoTIFF) to write: float32, NaN where there is no path
     #[arg(long, value_name = "FILE", requires = "effort")]
     pub(crate) effort_output: Option<PathBuf>,
+    /// Total of an amount along the path to every post (GeoTIFF) to write: float32, NaN where there is no path; may be repeated
+    #[arg(long, value_name = "AMOUNT=FILE", value_parser = amount_file)]
+    pub(crate) amount_output: Vec<AmountFile>,
     /// Hops back to the nearest start (GeoTIFF) to write
     #[arg(long, value_name = "FILE", requires = "back")]
     pub(crate) return_output: Option<PathBuf>,

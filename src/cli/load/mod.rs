@@ -381,7 +381,7 @@ pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs, pu
 pub(crate) fn load_map(
     target: &Path,
     common: &CommonArgs,
-    search: &SearchArgs,
+    (search, objective): (&SearchArgs, &[String]),
     purpose: impl Fn(ScenarioEnds) -> Purpose,
     has_start: bool,
 ) -> Result<Bare, Failure> {
@@ -391,11 +391,16 @@ pub(crate) fn load_map(
         (true, true) => ScenarioEnds::Offered,
         (false, true) => ScenarioEnds::Ignored,
     };
-    let source = match (input.is_scenario(), &common.scenario) {
+    let mut source = match (input.is_scenario(), &common.scenario) {
         (true, Some(other)) => return Err(two_scenarios(&input, other, "a DEM as DEM")),
         (true, None) => read_source(&input)?,
         (false, scenario) => option_source(scenario.as_deref())?,
     };
+    if !objective.is_empty() {
+        let amounts: Vec<toml::Value> = objective.iter().map(|amount| amount.trim().into()).collect();
+        source.entries.forget("search", "effort");
+        source.entries.set_by_option("--objective", "search", "objective", amounts.into());
+    }
     let dem = (!input.is_scenario()).then_some(input.file);
     of_source(source, dem, common, search, purpose(ends))
 }

@@ -78,6 +78,7 @@ impl<'a> MapOutputs<'a> {
 /// The rasters of the options, in the order in which they are opened.
 fn rasters(args: &MapArgs) -> impl Iterator<Item = (&'static str, Option<&Path>)> {
     let MapArgs { output, effort_output, return_output, mobility, nearest_output, predecessor_output, .. } = args;
+    let amounts = args.amount_output.iter().map(|output| ("--amount-output", Some(output.file.as_path())));
     [
         ("-o", output),
         ("--effort-output", effort_output),
@@ -88,6 +89,7 @@ fn rasters(args: &MapArgs) -> impl Iterator<Item = (&'static str, Option<&Path>)
     ]
     .into_iter()
     .map(|(option, file)| (option, file.as_deref()))
+    .chain(amounts)
 }
 
 /// Checks that each output has an extension that its readers recognise, and that a style has its raster.
@@ -108,7 +110,7 @@ fn check_extensions(args: &MapArgs) -> Result<(), Failure> {
     }
     if args.qml && rasters().next().is_none() {
         return Err(Failure::message(
-            "--qml: found no raster to write a style for, expected at least one: give -o FILE.tif, or --effort-output, --return-output, \
+            "--qml: found no raster to write a style for, expected at least one: give -o FILE.tif, or --effort-output, --amount-output, --return-output, \
              --nearest-output, --predecessor-output or --mobility",
         ));
     }

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use chta::{
-    figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
+    figure::{Caption, GoalMark, HopMapFigure, MapPosts, ValueMapFigure, draw_hop_map, draw_value_map},
     path::HopPath,
+    planner::Amount,
     quantity::MapPoint,
     report::MapAnswer,
     scenario::Scenario,
@@ -19,31 +20,48 @@ use crate::cli::{Failure, map_input::MapInput, output};
 
 /// The map as a picture, in the format of the file's extension.
 pub(super) fn map(input: &MapInput, prepared: &PreparedMap, study: &MapStudy, file: &Path) -> Result<Vec<u8>, Failure> {
-    let MapStudy { answer, out, back, paths, .. } = study;
+    let MapStudy { answer, out, back, paths, least, .. } = study;
+    let goals = prepared.goals.iter().zip(&answer.goals);
+    let marks: Vec<GoalMark> = goals
+        .clone()
+        .map(|(goal, record)| GoalMark { at: goal.at, hops: record.hops.and_then(|hops| u64::try_from(hops).ok()) })
+        .collect();
+    let ways: Vec<Vec<MapPoint>> = goals
+        .zip(paths)
+        .filter_map(|((_, record), path)| {
+            let start = prepared.starts.get(record.start?.checked_sub(1)?)?;
+            Some(places(start.at, path.as_ref()?))
+        })
+        .collect();
+    let starts: Vec<MapPoint> = prepared.starts.iter().map(|start| start.at).collect();
+    let lines = subtitle(answer, &input.bare.scenario);
+    let surface = prepared.finest().map_err(|e| Failure::of(&e))?;
+    let posts = MapPosts { dem: &surface, stride: prepared.lattice.stride };
+    if let Some((amount, totals)) = least.first().filter(|(amount, _)| *amount != Amount::Hops) {
+        let within = answer.objective.as_ref().and_then(|objective| objective.budget.as_ref());
+        let figure = ValueMapFigure {
+            caption: Caption { title: format!("By the least {}: {}", amount.words(), input.title()), lines },
+            posts,
+            values: totals,
+            value_name: format!("least {} ({})", amount.words(), amount.unit()),
+            none_name: within.map_or("not reached".to_owned(), |budget| format!("not within {} {}", budget.max, amount.unit())),
+            starts,
+            goals: marks,
+            paths: ways,
+        };
+        return output::encoded(draw_value_map(&figure), file);
+    }
     let can_return: Option<Vec<bool>> = back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
     let kept_out = prepared.ground.terrain().overlays().keep_out().map(|zones| kept_out(prepared, zones));
-    let goals = prepared.goals.iter().zip(&answer.goals);
     let figure = HopMapFigure {
-        caption: Caption {
-            title: format!("Where in how few hops: {}", input.title()),
-            lines: subtitle(answer, &input.bare.scenario),
-        },
-        posts: MapPosts { dem: prepared.dem(), stride: prepared.lattice.stride },
+        caption: Caption { title: format!("Where in how few hops: {}", input.title()), lines },
+        posts,
         hops: &out.hops,
         can_return: can_return.as_deref(),
         kept_out: kept_out.as_deref(),
-        starts: prepared.starts.iter().map(|start| start.at).collect(),
-        goals: goals
-            .clone()
-            .map(|(goal, record)| GoalMark { at: goal.at, hops: record.hops.and_then(|hops| u64::try_from(hops).ok()) })
-            .collect(),
-        paths: goals
-            .zip(paths)
-            .filter_map(|((_, record), path)| {
-                let start = prepared.starts.get(record.start?.checked_sub(1)?)?;
-                Some(places(start.at, path.as_ref()?))
-            })
-            .collect(),
+        starts,
+        goals: marks,
+        paths: ways,
     };
     output::encoded(draw_hop_map(&figure), file)
 }
@@ -63,12 +81,18 @@ fn kept_out(prepared: &PreparedMap, zones: &KeepOut) -> Vec<bool> {
 
 /// The subtitle of the picture: the map's assumptions and a summary of its result.
 fn subtitle(answer: &MapAnswer, scenario: &Scenario) -> Vec<String> {
-    let stride = if answer.stride > 1 { format!(", every {} posts", answer.stride) } else { String::new() };
+    let stride = match (answer.stride, answer.nodes_per_post) {
+        (1, 1) => String::new(),
+        (1, n) => format!(", {n} nodes a post spacing"),
+        (stride, _) => format!(", every {stride} posts"),
+    };
+    let by = if answer.objective.is_some() { " by paths of" } else { " in" };
     let bound = answer.hops_max.map_or(String::new(), |most| format!(", searched up to {most}"));
     let found = format!(
-        "{} of {} posts reachable from {} in at most {} hops{bound}{stride}",
+        "{} of {} {}s reachable from {}{by} at most {} hops{bound}{stride}",
         answer.reachable_posts,
         answer.posts,
+        answer.node(),
         answer.from(),
         answer.farthest_hops
     );

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use chta::{
     figure::RasterStyle,
     graph::Effort,
+    planner::Amount,
     reach::map::{HopMap, NO_GROUND, NOT_SEARCHED, UNREACHED},
     study::map::{MapStudy, NO_PREDECESSOR, PreparedMap},
     terrain::{Band, ResultBands, result_geotiff_bytes},
@@ -36,8 +37,12 @@ pub(super) fn encoded(
     let MapStudy { out, back, mobility, predecessors, .. } = study;
     let several = prepared.starts.len() > 1;
     let (from, to) = if several { ("the nearest start", "the nearest start") } else { ("the start", "the start") };
-    let beyond = args.hops_max.map_or(String::new(), |most| format!("; -2 more than {most}, not searched"));
-    let name = format!("fewest hops from {from}; {MARKS}{beyond}");
+    let beyond = beyond(study);
+    let of = match &study.answer.objective {
+        None => format!("fewest hops from {from}"),
+        Some(objective) => format!("hops from {from} on the path of least {}", listed(&objective.amounts)),
+    };
+    let name = format!("{of}; {MARKS}{beyond}");
     add(&args.output, &whole(&name, "hops", &out.hops), RasterStyle::hops(&out.hops))?;
     if let Some(back) = back {
         let name = format!("fewest hops back to {to}; -1 no way{beyond}");
@@ -50,6 +55,19 @@ pub(super) fn encoded(
         let name = effort_name(effort);
         let band = Band { name: &name, unit: effort.unit().name(), samples: &samples };
         add(&args.effort_output, &ResultBands::Float32(vec![band]), RasterStyle::values(&samples, effort.unit().name()))?;
+    }
+    for (output, (amount, totals)) in args.amount_output.iter().zip(&study.amounts) {
+        #[expect(clippy::cast_possible_truncation, reason = "the file holds 32-bit floats")]
+        let samples: Vec<f32> = totals.iter().map(|&total| total as f32).collect();
+        let is_least = study.least.first().is_some_and(|(first, _)| first == amount);
+        let of = if is_least { format!("least {}", amount.words()) } else { format!("{} along the path found", amount.words()) };
+        let unit = match amount.unit() {
+            "" => "hops",
+            unit => unit,
+        };
+        let name = format!("{of} from {from}, {unit}");
+        let band = Band { name: &name, unit, samples: &samples };
+        add(&Some(output.file.clone()), &ResultBands::Float32(vec![band]), RasterStyle::values(&samples, unit))?;
     }
     if let Some(mobility) = mobility {
         let share = Band { name: "share of the reach disc that one hop reaches", unit: "1", samples: &mobility.share };
@@ -73,6 +91,21 @@ pub(super) fn encoded(
         add(&args.predecessor_output, &bands, RasterStyle::predecessors(lattice.count()))?;
     }
     Ok(files)
+}
+
+/// What the mark of nodes that were not searched means; nothing where all were.
+fn beyond(study: &MapStudy) -> String {
+    let budget = study.answer.objective.as_ref().and_then(|objective| objective.budget.as_ref());
+    match (study.answer.hops_max, budget) {
+        (Some(most), _) => format!("; -2 more than {most}, not searched"),
+        (None, Some(budget)) => format!("; -2 beyond {} {}, not searched", budget.max, budget.amount.unit()),
+        (None, None) => String::new(),
+    }
+}
+
+/// The names of amounts with commas.
+fn listed(amounts: &[Amount]) -> String {
+    amounts.iter().map(|amount| amount.name()).collect::<Vec<_>>().join(", ")
 }
 
 /// A band of hop counts.

@@ -98,8 +98,8 @@ pub struct ValueMapFigure<'a> {
     pub value_name: String,
     /// The meaning of NaN at a post with an elevation, such as `unreachable`.
     pub none_name: String,
-    /// The start, if there is one.
-    pub start: Option<MapPoint>,
+    /// The starts.
+    pub starts: Vec<MapPoint>,
     /// The goals.
     pub goals: Vec<GoalMark>,
     /// Paths to goals: the start and every landing, in order.

@@ -180,7 +180,7 @@ fn value_map<'a>(posts: MapPosts<'a>, values: &'a [f64], name: &str) -> ValueMap
         values,
         value_name: name.to_owned(),
         none_name: "not reached".to_owned(),
-        start: None,
+        starts: Vec::new(),
         goals: Vec::new(),
         paths: Vec::new(),
     }

@@ -45,7 +45,7 @@ pub fn draw_value_map(figure: &ValueMapFigure<'_>) -> Result<Picture, FigureErro
     let map = MapPanel::new(posts.dem, &window, top_mm);
     let end_mm = map.draw(&mut sheet, pixels);
     map.paths(&mut sheet, &figure.paths);
-    map.ends(&mut sheet, figure.start.as_slice(), &figure.goals, &figure.paths);
+    map.ends(&mut sheet, &figure.starts, &figure.goals, &figure.paths);
     let end_mm = paragraph(&mut sheet, &format!("Colours: {}", figure.value_name), TEXT_MM, false, end_mm + 0.5);
     let mut entries: Vec<_> = steps.texts().into_iter().zip(&tones).map(|(text, &tone)| (Swatch::Fill(tone), text)).collect();
     let none = figure.values.iter().filter(|value| !value.is_finite()).count();
@@ -56,7 +56,7 @@ pub fn draw_value_map(figure: &ValueMapFigure<'_>) -> Result<Picture, FigureErro
     if gaps > 0 {
         entries.push((Swatch::Symbol(no_data_symbol), "no data".to_owned()));
     }
-    entries.extend(end_keys(figure.start.as_slice(), &figure.goals, &figure.paths));
+    entries.extend(end_keys(&figure.starts, &figure.goals, &figure.paths));
     let end_mm = keys::draw(&mut sheet, &entries, end_mm + 2.5);
     let height_mm = notes(&mut sheet, &posts, &window, end_mm + 0.8) + 2.0;
     Ok(Picture::page(sheet, height_mm))

@@ -42,6 +42,21 @@ pub enum MapError {
         /// The least stride with which the table fits.
         stride: usize,
     },
+    /// One hop spans too many nodes of a lattice that is finer than the posts.
+    #[error(
+        "one hop reaches {range_m:.1} m, {nodes:.0} nodes, which makes {offsets} landings from every node, more than fit a table of 256 MiB: \
+         found {per_post} nodes for each post spacing, expected fewer: make the spacing of nodes larger, or lower the speed limits"
+    )]
+    TooFine {
+        /// The reach of one hop, m.
+        range_m: f64,
+        /// The same in nodes.
+        nodes: f64,
+        /// How many offsets are in reach.
+        offsets: usize,
+        /// Nodes a post spacing.
+        per_post: usize,
+    },
     /// A hop count exceeds the range of the map's integers.
     #[error("a post is more than {most} hops away, expected fewer: take a greater stride or higher speed limits")]
     TooManyHops {

@@ -22,10 +22,7 @@ impl PostHops {
     /// [`MapError::Ground`] and [`MapError::Terrain`].
     pub fn chain(&self, from: Post, to: Post) -> Result<Option<ConstrainedChain>, MapError> {
         let map = self.ground().terrain().dem().georeference();
-        let [begin, end] = [from, to].map(|node| {
-            let Post { row, col } = self.lattice().post(node);
-            map.post(row, col)
-        });
+        let [begin, end] = [from, to].map(|node| self.lattice().at(map, node));
         match self.ground().chain(begin, end) {
             Ok(chain) => Ok(Some(chain)),
             Err(SliceProblem::Terrain(TerrainError::NoData { .. })) => Ok(None),

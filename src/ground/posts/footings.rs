@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{NodeLattice, overlays::OverlayTable, refusal::rest_tangent};
-use crate::ground::{DemGround, MapPosition};
+use crate::ground::DemGround;
 
 /// What the ground under the footprint at a node allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,10 +32,8 @@ impl FootingTable {
         let dem = ground.terrain().dem();
         let of_node = |index: usize| {
             let node = lattice.node(index);
-            let post = lattice.post(node);
-            let Some(z_m) = dem.elevation(post.row, post.col) else { return Standing::Refused };
-            let position = MapPosition { at: dem.georeference().post(post.row, post.col), z_m };
-            ground.standing(&position, rest_tangent(ground, overlays, lattice.post_index(node)))
+            let Some(position) = lattice.position(dem, node) else { return Standing::Refused };
+            ground.standing(&position, rest_tangent(ground, overlays, lattice.raster_index(node)))
         };
         Some(Self((0..lattice.count()).into_par_iter().map(of_node).collect()))
     }

@@ -20,6 +20,7 @@ use crate::{
     chain::{QuickCone, QuickGrip},
     ground::{DemGround, MapPosition, Surface},
     quantity::SlopeInterval,
+    terrain::OverlaidDem,
     world::Grip,
 };
 
@@ -34,6 +35,8 @@ const FINE: f64 = 1.0e-9;
 /// All single hops between the nodes of a DEM.
 pub struct PostHops {
     pub(super) ground: DemGround,
+    /// The same surface with a post at every node, where nodes are finer than posts.
+    finer: Option<OverlaidDem>,
     scale: HeightScale,
     pub(super) lattice: NodeLattice,
     pub(super) table: OffsetTable,
@@ -46,6 +49,9 @@ pub struct PostHops {
     pub(super) within_reach: Vec<usize>,
     /// Whether map coordinates are too coarse for fast arithmetic.
     coarse: bool,
+    /// Whether the clearance is kept at vertices of the slice alone, of which the finer surface has others: then fast arithmetic looks at the
+    /// bare ground, and the slice decides what that leaves.
+    pub(super) by_vertices: bool,
 }
 
 impl std::fmt::Debug for PostHops {
@@ -56,6 +62,15 @@ impl std::fmt::Debug for PostHops {
             .field("offsets", &self.table.offsets.len())
             .finish_non_exhaustive()
     }
+}
+
+/// The surface of a ground with a post at every node; `None` where nodes are posts.
+fn finer(ground: &DemGround, lattice: NodeLattice) -> Result<Option<OverlaidDem>, MapError> {
+    if lattice.per_post == 1 {
+        return Ok(None);
+    }
+    let terrain = ground.terrain();
+    Ok(Some(OverlaidDem::new(terrain.dem().finer(lattice.per_post)?, terrain.overlays().clone())))
 }
 
 /// The result of fast arithmetic on a pair.
@@ -76,16 +91,29 @@ impl PostHops {
     /// # Errors
     /// [`MapError`]: the reach spans too many posts, constraints are missing, or overlays do not cover the terrain.
     pub fn new(ground: DemGround, stride: usize) -> Result<Self, MapError> {
-        let dem = ground.terrain().dem();
-        let lattice = NodeLattice::new(dem, stride);
+        let lattice = NodeLattice::new(ground.terrain().dem(), stride);
+        Self::over(ground, lattice)
+    }
+
+    /// The same over a lattice of nodes on the DEM of this ground.
+    ///
+    /// Nodes finer than posts change where one may stand, not the ground: fast arithmetic uses the heights of the same surface at every
+    /// node, and where it is close to a limit the slice of the DEM itself decides.
+    ///
+    /// # Errors
+    /// As [`PostHops::new`].
+    pub fn over(ground: DemGround, lattice: NodeLattice) -> Result<Self, MapError> {
         if let Some(found) = ground.footprint_without_room() {
             let expected = "one that has room on the DEM: check its unit, or take a larger DEM";
             return Err(MapError::Request { what: "hopper.footprint_m", found, expected });
         }
         exact::probe(&ground)?;
+        let finer = finer(&ground, lattice)?;
+        let terrain = finer.as_ref().unwrap_or(ground.terrain());
+        let dem = terrain.dem();
         let scale = HeightScale::of(dem);
         let heights = Heights::of(dem, &scale);
-        let overlays = OverlayTable::new(ground.terrain(), ground.constant_friction())?;
+        let overlays = OverlayTable::new(terrain, ground.constant_friction())?;
         let footings = FootingTable::new(&ground, lattice, overlays.as_ref());
         // With a footprint, the plane fitted over it is held against the rest slope, not the facets.
         let rest = |post| rest_tangent(&ground, overlays.as_ref(), post).filter(|_| footings.is_none());
@@ -102,7 +130,11 @@ impl PostHops {
             [bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y, low_m, high_m].map(f64::abs).into_iter().fold(0.0, f64::max);
         let coarse = f64::EPSILON * largest_m > FINE * step_m;
         let table = OffsetTable::default();
-        let mut hops = Self { scale, lattice, table, facets, overlays, footings, grip, within_reach: Vec::new(), coarse, ground };
+        let within_reach = Vec::new();
+        let clearance = ground.envelope().clearance();
+        let by_vertices = lattice.per_post > 1 && clearance.height_m() > 0.0 && !clearance.has_kinks();
+        let mut hops =
+            Self { finer, scale, lattice, table, facets, overlays, footings, grip, within_reach, coarse, by_vertices, ground };
         hops.set_reach()?;
         Ok(hops)
     }
@@ -122,10 +154,11 @@ impl PostHops {
         self.ground.envelope()
     }
 
-    /// The elevations.
+    /// The heights of the surface, with a post at every node.
     #[inline]
     pub(super) fn heights(&self) -> Heights<'_> {
-        Heights::of(self.ground.terrain().dem(), &self.scale)
+        let terrain = self.finer.as_ref().unwrap_or(self.ground.terrain());
+        Heights::of(terrain.dem(), &self.scale)
     }
 
     /// All offsets, nearest first.
@@ -145,20 +178,29 @@ impl PostHops {
 
     /// The position of a node; `None` where it has no elevation.
     pub fn position(&self, node: Post) -> Option<MapPosition> {
-        let post = self.lattice.post(node);
-        let dem = self.ground.terrain().dem();
-        let z_m = dem.elevation(post.row, post.col)?;
-        Some(MapPosition { at: dem.georeference().post(post.row, post.col), z_m })
+        self.lattice.position(self.ground.terrain().dem(), node)
+    }
+
+    /// The height of a node, m; NaN without elevation.
+    #[inline]
+    pub(crate) fn height_m(&self, node: Post) -> f64 {
+        self.heights().at(self.lattice.raster_index(node))
+    }
+
+    /// The same by the number of the node.
+    #[inline]
+    pub(crate) fn height_of_index_m(&self, index: usize) -> f64 {
+        if self.lattice.stride == 1 { self.heights().at(index) } else { self.height_m(self.lattice.node(index)) }
     }
 
     /// Whether a node has an elevation.
     pub(crate) fn has_ground(&self, node: Post) -> bool {
-        !self.heights().at(self.lattice.post_index(node)).is_nan()
+        !self.height_m(node).is_nan()
     }
 
     /// Whether a hop in some direction may begin or end at a node.
     pub(crate) fn usable(&self, node: Post) -> bool {
-        self.facets.usable(self.lattice.post_index(node)) && !self.never_stands(node)
+        self.facets.usable(self.lattice.raster_index(node)) && !self.never_stands(node)
     }
 
     /// Whether the ground under the footprint at a node allows no contact in any direction. Beside the borders of a friction raster, the
@@ -205,7 +247,7 @@ impl PostHops {
     }
 
     #[inline]
-    pub(super) fn moved(&self, from: Post, rows: i32, cols: i32) -> Option<Post> {
+    pub(crate) fn moved(&self, from: Post, rows: i32, cols: i32) -> Option<Post> {
         let row = from.row.wrapping_add_signed(rows as isize);
         let col = from.col.wrapping_add_signed(cols as isize);
         (row < self.lattice.rows && col < self.lattice.cols).then_some(Post { row, col })
@@ -239,7 +281,7 @@ impl PostHops {
     /// Fast arithmetic on a pair.
     #[inline]
     fn evaluate(&self, from: Post, offset: &Offset, worth: impl FnOnce(LineOfSight, SlopeInterval) -> bool) -> Verdict {
-        let takeoff = self.lattice.post_index(from);
+        let takeoff = self.lattice.raster_index(from);
         let landing = takeoff.wrapping_add_signed(offset.post_step);
         let heights = self.heights();
         let takeoff_m = heights.at(takeoff);
@@ -256,7 +298,7 @@ impl PostHops {
         let Some(stands) = self.stands(from, offset, overlay) else { return Verdict::No };
         let Some((slopes, mut sure)) = self.cones(takeoff, landing, offset, overlay) else { return Verdict::No };
         sure &= stands;
-        sure &= overlay != Overlay::Mixed && !self.coarse;
+        sure &= overlay != Overlay::Mixed && !self.coarse && !self.by_vertices;
         let limits = self.ground.hopper().limits();
         let sight = LineOfSight::new(offset.run_m, rise_m);
         let lofts = self.envelope().lofts(
@@ -298,7 +340,7 @@ impl PostHops {
         match &self.overlays {
             None => Overlay::Bare,
             Some(overlays) => {
-                let post = self.lattice.post(from);
+                let post = self.lattice.in_raster(from);
                 let stride = self.lattice.stride.cast_signed();
                 let end = Post {
                     row: post.row.wrapping_add_signed(offset.rows as isize * stride),

@@ -8,8 +8,9 @@ use super::{
     samples::{HeightScale, Heights},
 };
 use crate::{
-    ballistics::{safety_ceiling_m, safety_range_m},
+    ballistics::{limits::ClearanceProfile, safety_ceiling_m, safety_range_m},
     ground::{DemGround, Surface},
+    terrain::points,
     world::tolerant_speed_m_s,
 };
 
@@ -19,7 +20,7 @@ const WIDER: f64 = 1.0 + 1.0e-6;
 /// The largest table of crossings, 320 MiB: a reach of some 150 posts.
 const MOST_CROSSINGS: usize = 1 << 23;
 
-/// How far hops reach from the nodes of a DEM, and how large the tables are that this takes.
+/// How far hops reach from the nodes of a DEM.
 #[derive(Clone, Debug)]
 pub(super) struct Reach {
     spacing: Spacing,
@@ -27,7 +28,6 @@ pub(super) struct Reach {
     longest_m: f64,
     /// For each block, the longest hop from or to its nodes, m.
     ranges_m: Vec<f64>,
-    size: TableSize,
 }
 
 /// The number of pairs and bytes of the hops over a DEM: upper bounds, known before anything is computed.
@@ -78,6 +78,14 @@ impl Reach {
         let size = OffsetTable::size(spacing, longest_m, (lattice.rows, lattice.cols));
         if size.crossings > MOST_CROSSINGS {
             let posts = longest_m / spacing.dx_m.min(spacing.dy_m);
+            if lattice.per_post > 1 {
+                return Err(MapError::TooFine {
+                    range_m: longest_m,
+                    nodes: posts,
+                    offsets: size.offsets,
+                    per_post: lattice.per_post,
+                });
+            }
             let dem = ground.terrain().dem();
             let fits = |stride: &usize| {
                 let bounds = ((dem.rows() - 1) / stride + 1, (dem.cols() - 1) / stride + 1);
@@ -87,7 +95,7 @@ impl Reach {
             let stride = (spacing.stride + 1..widest).find(fits).unwrap_or(widest);
             return Err(MapError::TooFar { range_m: longest_m, posts, offsets: size.offsets, stride });
         }
-        Ok(Self { spacing, longest_m, ranges_m, size })
+        Ok(Self { spacing, longest_m, ranges_m })
     }
 }
 
@@ -100,8 +108,9 @@ fn speeds_m_s(ground: &DemGround) -> [f64; 2] {
 /// The spacing of the posts and nodes of a ground.
 fn spacing(ground: &DemGround, lattice: NodeLattice) -> Spacing {
     let dem = ground.terrain().dem();
-    let map = dem.georeference();
-    Spacing { dx_m: map.dx_m(), dy_m: map.dy_m(), stride: lattice.stride, node_cols: lattice.cols, post_cols: dem.cols() }
+    let map = dem.georeference().finer(lattice.per_post);
+    let raster_cols = points(dem.cols(), lattice.per_post);
+    Spacing { dx_m: map.dx_m(), dy_m: map.dy_m(), stride: lattice.stride, node_cols: lattice.cols, post_cols: raster_cols }
 }
 
 /// Lowest and highest node of each block; (inf, -inf) if it has none.
@@ -109,7 +118,7 @@ fn block_heights(lattice: NodeLattice, posts: Heights<'_>) -> Vec<(f64, f64)> {
     let (down, across) = lattice.blocks();
     (0..down * across)
         .map(|block| {
-            let heights = lattice.nodes_of(block).map(|node| posts.at(lattice.post_index(node)));
+            let heights = lattice.nodes_of(block).map(|node| posts.at(lattice.raster_index(node)));
             // `min` and `max` of a number and NaN give the number.
             heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)))
         })
@@ -157,7 +166,8 @@ impl PostHops {
             (-landing_m - slack_m, takeoff_m + slack_m)
         };
         let bounds = (self.lattice.rows, self.lattice.cols);
-        self.table = OffsetTable::new(spacing, longest_m, bounds, self.envelope().clearance(), rises_m);
+        let clearance = if self.by_vertices { ClearanceProfile::NONE } else { self.envelope().clearance() };
+        self.table = OffsetTable::new(spacing, longest_m, bounds, clearance, rises_m);
         let count = |range_m: &f64| self.table.offsets.partition_point(|offset| offset.run_m <= *range_m);
         self.within_reach = ranges_m.iter().map(count).collect();
         Ok(())
@@ -172,19 +182,25 @@ impl PostHops {
     ///
     /// # Errors
     /// As [`PostHops::new`], for a reach of too many posts.
-    pub fn size(ground: &DemGround, stride: usize) -> Result<PostHopsSize, MapError> {
+    pub fn size(ground: &DemGround, lattice: NodeLattice) -> Result<PostHopsSize, MapError> {
         let dem = ground.terrain().dem();
-        let lattice = NodeLattice::new(dem, stride);
         let scale = HeightScale::of(dem);
-        let TableSize { offsets, crossings } = Reach::of(ground, lattice, Heights::of(dem, &scale))?.size;
-        let (posts, nodes) = (dem.rows() * dem.cols(), lattice.count());
+        let of_posts = if lattice.per_post > 1 { NodeLattice::new(dem, 1) } else { lattice };
+        // Blocks of finer nodes are smaller, and so is their relief: they reach no farther than those of posts.
+        let reach = Reach::of(ground, of_posts, Heights::of(dem, &scale))?;
+        let TableSize { offsets, crossings } =
+            OffsetTable::size(spacing(ground, lattice), reach.longest_m, (lattice.rows, lattice.cols));
+        let nodes = lattice.count();
+        // The tables are about the posts of the raster of heights, of which a finer lattice has its own.
+        let posts = if lattice.per_post > 1 { nodes } else { dem.rows() * dem.cols() };
+        let finer = if lattice.per_post > 1 { size_of::<f64>() * nodes } else { 0 };
         let (down, across) = lattice.blocks();
         let overlays = ground.terrain().overlays();
         let has_overlays = overlays.friction().is_some() || overlays.keep_out().is_some();
         let facets = 3 * posts;
         let footings = if ground.footprint.is_some() { nodes } else { 0 };
         let (overlay, overlay_preparation) = if has_overlays { OverlayTable::bytes(posts) } else { (0, 0) };
-        let held = facets + footings + overlay + OffsetTable::bytes(offsets, crossings) + 64 * down * across;
+        let held = finer + facets + footings + overlay + OffsetTable::bytes(offsets, crossings) + 64 * down * across;
         let preparation = facets.max(overlay_preparation).max(OffsetTable::preparation_bytes(offsets, crossings));
         Ok(PostHopsSize { nodes, offsets, bytes: held as u64, preparation_bytes: preparation as u64 })
     }

@@ -59,15 +59,14 @@ pub(super) fn rest_tangent(ground: &DemGround, overlays: Option<&OverlayTable>, 
 impl PostHops {
     /// Why no hop begins or ends at a node in any direction; `None` if ground and zones allow some.
     pub fn refusal(&self, node: Post) -> Option<PostRefusal> {
-        let post = self.lattice.post(node);
-        let place = self.ground.terrain().dem().georeference().post(post.row, post.col);
+        let place = self.lattice.at(self.ground.terrain().dem().georeference(), node);
         if self.ground.terrain().overlays().keeps_out(place) {
             return Some(PostRefusal::KeptOut);
         }
         if self.usable(node) {
             return None;
         }
-        let index = self.lattice.post_index(node);
+        let index = self.lattice.raster_index(node);
         let rest = rest_tangent(&self.ground, self.overlays.as_ref(), index);
         if self.never_stands(node)
             && let Some(refusal) = self.position(node).and_then(|position| self.ground.footprint_against(&position, rest))
@@ -88,10 +87,7 @@ impl PostHops {
 
     /// The nearest node with neither refusal; ties go to the north and west. `None` if all refuse.
     pub fn nearest_usable(&self, node: Post) -> Option<Post> {
-        let place = |node: Post| {
-            let Post { row, col } = self.lattice.post(node);
-            self.ground.terrain().dem().georeference().post(row, col)
-        };
+        let place = |node: Post| self.lattice.at(self.ground.terrain().dem().georeference(), node);
         let away2 = |other: &Post| (place(*other) - place(node)).norm_squared();
         let usable = (0..self.lattice.count()).map(|index| self.lattice.node(index)).filter(|&other| self.usable(other));
         let mut candidates: Vec<(f64, Post)> = usable.map(|other| (away2(&other), other)).collect();

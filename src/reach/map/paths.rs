@@ -1,13 +1,13 @@
 //! The hops of a path over the map, each on its own slice.
 
-use super::{MapError, Post, PostHops};
+use super::{MapError, MapObjective, Post, PostHops};
 use crate::{
-    ballistics::TakeoffChoice,
+    ballistics::{LineOfSight, TakeoffChoice},
     graph::{Edge, Leg},
     ground::{ContactPoint, Surface},
     hop::{HopTest, Split},
     path::{Execution, Hop, HopPath, execute, generate},
-    quantity::VertexId,
+    quantity::{SlopeInterval, VertexId},
 };
 
 /// One hop of a path, on the slice between its two posts.
@@ -24,22 +24,47 @@ pub struct MapHop {
 /// # Errors
 /// [`MapError`], as [`PostHops::lofts`].
 pub fn path_hops(hops: &PostHops, nodes: &[Post], choice: TakeoffChoice) -> Result<Vec<MapHop>, MapError> {
+    hops_along(hops, nodes, choice, |_, _, _| None)
+}
+
+/// The same with the take-off of each hop that is best for an objective.
+///
+/// # Errors
+/// [`MapError`], as [`PostHops::lofts`].
+pub fn path_hops_by(
+    hops: &PostHops,
+    nodes: &[Post],
+    objective: &MapObjective,
+    choice: TakeoffChoice,
+) -> Result<Vec<MapHop>, MapError> {
+    hops_along(hops, nodes, choice, |sight, lofts, is_first| Some(objective.arc(sight, lofts, is_first).loft()))
+}
+
+/// The hops of a path of nodes, each with the loft that is wanted of its lofts; `None`: by the choice.
+fn hops_along(
+    hops: &PostHops,
+    nodes: &[Post],
+    choice: TakeoffChoice,
+    wanted: impl Fn(LineOfSight, SlopeInterval, bool) -> Option<f64>,
+) -> Result<Vec<MapHop>, MapError> {
     let mut found = Vec::with_capacity(nodes.len().saturating_sub(1));
     for (from, to) in nodes.iter().zip(nodes.iter().skip(1)) {
         let Some(chain) = hops.chain(*from, *to)? else { continue };
         let test = HopTest::new(chain);
-        let Some(path) = hop_along(&test, choice) else { continue };
+        let is_first = found.is_empty();
+        let Some(path) = hop_along(&test, choice, |sight, lofts| wanted(sight, lofts, is_first)) else { continue };
         found.push(MapHop { test, path });
     }
     Ok(found)
 }
 
 /// The single hop over a slice; `None` if no hop joins the two nodes.
-fn hop_along(test: &HopTest, choice: TakeoffChoice) -> Option<HopPath> {
+fn hop_along(test: &HopTest, choice: TakeoffChoice, wanted: impl Fn(LineOfSight, SlopeInterval) -> Option<f64>) -> Option<HopPath> {
     let geometry = test.chain().geometry();
     let (takeoff, landing) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
     let lofts = test.lofts(&takeoff, &landing).ok()?;
-    generate(test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts), loft: None }], choice, Split::default()).ok()
+    let loft = wanted(test.line_of_sight(&takeoff, &landing)?, lofts);
+    generate(test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts), loft }], choice, Split::default()).ok()
 }
 
 /// Joins the hops of a path to one [`HopPath`] over the map, with distances along it from its start.

@@ -29,7 +29,7 @@ pub const NO_GROUND: i16 = i16::MIN;
 pub const NOT_SEARCHED: i16 = -2;
 
 /// No offset, and no source: for sources and for unreached posts.
-const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 
 /// A node that paths start from, and what was spent before: the labels with which the search begins there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,6 +83,18 @@ pub struct HopMap {
     /// For each node the number of its source; empty for a map of one source.
     nearest: Vec<u32>,
     journey: Journey,
+}
+
+/// Paths that were found otherwise: for each node where its last hop comes from.
+pub(super) struct PathLabels {
+    /// What a node without a path is marked with.
+    pub(super) marks: Vec<i16>,
+    /// Whether there is a path.
+    pub(super) reached: Vec<bool>,
+    /// The offset of its last hop; [`NONE`] at sources.
+    pub(super) previous: Vec<u32>,
+    /// The number of its source; empty for a map of one.
+    pub(super) nearest: Vec<u32>,
 }
 
 /// A node reached by the present layer.
@@ -421,6 +433,56 @@ impl HopMap {
             Some(&known) => found.effort < known || (found.effort <= known && is_lower),
             None => is_lower,
         }
+    }
+
+    /// The map of paths from their sources, with the hops of each.
+    ///
+    /// # Errors
+    /// [`MapError::TooManyHops`].
+    pub(super) fn of_paths(hops: &PostHops, labels: PathLabels) -> Result<Self, MapError> {
+        let PathLabels { marks, reached, previous, nearest } = labels;
+        let mut map = Self { hops: marks, effort: Vec::new(), previous, nearest, journey: Journey::Outbound };
+        let each = vec![1.0; map.hops.len()];
+        // Sources have no hop before them.
+        map.hops.iter_mut().zip(&reached).filter(|(_, reached)| **reached).for_each(|(hops, _)| *hops = 0);
+        let counts = map.summed(hops, &each, |total, hop| total + hop);
+        for (hops, count) in map.hops.iter_mut().zip(counts).filter(|(hops, _)| **hops >= 0) {
+            if count > f64::from(i16::MAX) {
+                return Err(MapError::TooManyHops { most: i16::MAX });
+            }
+            #[expect(clippy::cast_possible_truncation, reason = "a count within the range")]
+            let count = count as i16;
+            *hops = count;
+        }
+        Ok(map)
+    }
+
+    /// For each node, row after row, what the hops of its path from the source take together, where `each` has what the last hop to each node
+    /// takes; NaN without a path.
+    pub(super) fn summed(&self, hops: &PostHops, each: &[f64], join: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+        let lattice = hops.lattice();
+        let mut totals = vec![f64::NAN; each.len()];
+        let mut ahead = Vec::new();
+        for node in (0..each.len()).filter(|&node| self.hops[node] >= 0) {
+            let mut at = node;
+            while totals[at].is_nan() {
+                ahead.push(at);
+                match self.previous(hops, lattice.node(at)) {
+                    Some(previous) => at = lattice.index(previous),
+                    None => break,
+                }
+            }
+            while let Some(next) = ahead.pop() {
+                let before = self.previous(hops, lattice.node(next)).map(|previous| totals[lattice.index(previous)]);
+                totals[next] = before.map_or(0.0, |before| join(before, each[next]));
+            }
+        }
+        totals
+    }
+
+    /// Where the last hop to a node comes from, with its offset; `None` for sources and for unreached nodes.
+    pub(super) fn last_hop(&self, hops: &PostHops, node: Post) -> Option<(Post, usize)> {
+        Some((self.previous(hops, node)?, self.previous[hops.lattice().index(node)] as usize))
     }
 
     /// The bytes of a map for each node, with an effort or without, of one source or of several.

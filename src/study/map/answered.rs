@@ -2,19 +2,24 @@
 
 use std::sync::Arc;
 
-use super::{super::Defect, MapQuestion, MapStudyError, PreparedMap, Spot};
+use super::{
+    super::Defect,
+    MapQuestion, MapStudyError, PreparedMap, Spot,
+    aim::{Aim, allowed},
+};
 use crate::{
     ballistics::PathBounds,
     ground::Surface,
-    path::HopPath,
+    path::{Hop, HopPath},
+    planner::{Amount, Objective, TotalBudget},
     progress::Progress,
     reach::map::{
-        HopMap, Journey, MapHop, Mobility, PostHops, Search, Source, costs_to_go, joined, mobility, path_hops, risks_flown_over,
-        search, verify,
+        HopMap, Journey, MapHop, MapObjective, Mobility, Post, PostHops, Search, Source, costs_to_go, joined, least_totals,
+        mobility, path_hops, path_hops_by, risks_flown_over, search, totals_along, verify,
     },
     report::{
-        DeratingRecord, GoalRecord, HopRecord, MapAnswer, MapSummary, PropellantShortage, SimulationRecord, SuccessEstimate,
-        TotalsRecord,
+        AmountRecord, DeratingRecord, GoalRecord, HopRecord, MapAnswer, MapBudgetRecord, MapObjectiveRecord, MapSummary,
+        PropellantShortage, SimulationRecord, SuccessEstimate, TotalsRecord,
     },
     scenario::UncertaintyKeys,
     study::{Extremes, TrialGround, constant_gravity_warnings, sense::unplanned_bounces},
@@ -40,6 +45,10 @@ pub struct MapStudy {
     pub mobility: Option<Mobility>,
     /// For each post, the one that its last hop comes from, as [`HopMap::predecessors`] gives it; [`NO_PREDECESSOR`] without one.
     pub predecessors: Option<Vec<i32>>,
+    /// The totals of each amount of the objective at every node, NaN without a path; empty where the map has fewest hops.
+    pub least: Vec<(Amount, Vec<f64>)>,
+    /// The totals of the amounts that were asked for, along the path to every node.
+    pub amounts: Vec<(Amount, Vec<f64>)>,
     /// The hops to each goal, each on its own slice; `None` if it was not reached.
     pub goal_hops: Vec<Option<Vec<MapHop>>>,
     /// The same as paths over the map, which the independent checker has flown.
@@ -52,9 +61,37 @@ struct Found {
     back: Option<HopMap>,
     mobility: Option<Mobility>,
     predecessors: Option<Vec<i32>>,
+    least: Vec<(Amount, Vec<f64>)>,
+    amounts: Vec<(Amount, Vec<f64>)>,
     goal_hops: Vec<Option<Vec<MapHop>>>,
     paths: Vec<Option<HopPath>>,
     warnings: Vec<String>,
+}
+
+/// The greatest of the totals of an amount.
+fn greatest(amount: Amount, totals: &[f64]) -> AmountRecord {
+    AmountRecord { amount, total: totals.iter().copied().fold(0.0, f64::max) }
+}
+
+/// What the map has least; `None` where that is hops.
+fn objective_record(question: &MapQuestion<'_>, least: &[(Amount, Vec<f64>)]) -> Result<Option<MapObjectiveRecord>, MapStudyError> {
+    let Aim::Least(objective, budget) = question.aim()? else { return Ok(None) };
+    Ok(Some(MapObjectiveRecord {
+        amounts: objective.amounts().to_vec(),
+        greatest: least.iter().map(|(amount, totals)| greatest(*amount, totals)).collect(),
+        budget: budget.map(|TotalBudget { amount, key, most }| MapBudgetRecord { amount, key: key.to_owned(), max: most }),
+    }))
+}
+
+/// What is not by the objective of a map that has one.
+fn beside_objective(question: &MapQuestion<'_>, flies: bool) -> Vec<String> {
+    let Some(objective) = &question.scenario.objective else { return Vec::new() };
+    let back = "the ways back are of fewest hops: neither the objective nor its budget bounds them".to_owned();
+    let flown = format!(
+        "the paths are by the objective {objective}, not by reliability: they stand on the edge of their limits, and a robot that replans over \
+         the map goes on by reliability, or by hops and effort"
+    );
+    question.returns.then_some(back).into_iter().chain(flies.then_some(flown)).collect()
 }
 
 /// How reliably the path to a goal is flown.
@@ -74,7 +111,7 @@ impl PreparedMap {
         let keys = flown.as_ref().map(|(scenario, _)| scenario.uncertainty.clone().unwrap_or_default());
         // Run inside the rayon pool: work started by a pool thread is picked up faster than work submitted from outside.
         let found = rayon::scope(|_| self.found(question, progress))?;
-        let Found { out, back, mobility, predecessors, goal_hops, paths, warnings: of_ends } = found;
+        let Found { out, back, mobility, predecessors, least, amounts, goal_hops, paths, warnings: of_ends } = found;
         let trials = match &keys {
             Some(keys) => self.flown(question, &paths, keys, progress)?,
             None => vec![None; paths.len()],
@@ -88,13 +125,25 @@ impl PreparedMap {
             back: back.as_ref(),
             mobility: mobility.as_ref(),
             effort: question.effort.then_some(scenario.search.effort),
-            hops_max: question.hops_max,
+            hops_max: match question.aim()? {
+                Aim::Hops(most) => most,
+                Aim::Least(..) => None,
+            },
         });
+        answer.objective = objective_record(question, &least)?;
+        answer.amounts = amounts.iter().map(|(amount, totals)| greatest(*amount, totals)).collect();
         answer.derating = DeratingRecord::of(&scenario.derating);
         let goals = self.goals.iter().zip(&paths).zip(trials);
-        answer.goals =
-            goals.map(|((goal, path), trials)| self.goal_record(goal, (&out, back.as_ref()), path.as_ref(), trials)).collect();
+        let record = |((goal, path), trials): ((&Spot, &Option<HopPath>), _)| {
+            let record = self.goal_record(goal, (&out, back.as_ref()), path.as_ref(), trials);
+            let node = self.lattice.index(goal.post);
+            let total = |(amount, totals): &(Amount, Vec<f64>)| AmountRecord { amount: *amount, total: totals[node] };
+            let totals = least.iter().map(total).filter(|record| !record.total.is_nan()).collect();
+            GoalRecord { objective_totals: totals, ..record }
+        };
+        answer.goals = goals.map(record).collect();
         let mut warnings = self.warnings.clone();
+        warnings.extend(beside_objective(question, keys.is_some()));
         if let Some(((scenario, of_errors), keys)) = flown.as_ref().zip(keys.as_ref()) {
             warnings.extend(of_errors.iter().cloned());
             warnings.extend(scenario.trial_warnings(&[keys.policy], &self.trial_ground(&paths)));
@@ -112,22 +161,49 @@ impl PreparedMap {
         let hops: Vec<_> = paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
         warnings.extend(constant_gravity_warnings(&scenario.body, Extremes::of(&hops)));
         warnings.extend(unplanned_bounces(&hops));
-        Ok(MapStudy { answer, warnings, out, back, mobility, predecessors, goal_hops, paths })
+        warnings.extend(self.short_hops(question, &hops));
+        Ok(MapStudy { answer, warnings, out, back, mobility, predecessors, least, amounts, goal_hops, paths })
     }
 
     /// Searches, and checks the path to every goal.
     fn found(&self, question: &MapQuestion<'_>, progress: &dyn Progress) -> Result<Found, MapStudyError> {
         let options = &question.scenario.search;
-        let hops = PostHops::new(self.planning.clone(), self.lattice.stride)?;
+        let hops = PostHops::over(self.planning.clone(), self.lattice)?;
         let sources: Vec<Source> = self.starts.iter().map(|start| start.post.into()).collect();
         let effort = question.effort.then_some((options.effort, options.takeoff));
-        let asked = |journey, effort| Search { journey, effort, hops_max: question.hops_max };
-        let out = search(&hops, &sources, asked(Journey::Outbound, effort), progress)?;
+        let aim = question.aim()?;
+        let hops_max = match &aim {
+            Aim::Hops(most) => *most,
+            Aim::Least(..) => None,
+        };
+        let asked = |journey, effort| Search { journey, effort, hops_max };
+        let objective = MapObjective::new(&hops, &question.scenario.full_objective(), question.scenario.commands, options.takeoff);
+        let (out, least) = match &aim {
+            Aim::Hops(_) => (search(&hops, &sources, asked(Journey::Outbound, effort), progress)?, Vec::new()),
+            Aim::Least(of, budget) => {
+                let starts: Vec<Post> = self.starts.iter().map(|start| start.post).collect();
+                let found = least_totals(&hops, &starts, &objective, allowed(budget.as_ref()), progress)?;
+                let (paths, totals) = found.into_parts();
+                (paths, of.amounts().iter().copied().zip(totals).collect::<Vec<_>>())
+            }
+        };
+        let amounts = question
+            .amounts
+            .iter()
+            .map(|amount| {
+                let known = least.iter().find(|(of, _)| of == amount).map(|(_, totals)| Ok(totals.clone()));
+                known.unwrap_or_else(|| totals_along(&hops, &out, *amount, &objective)).map(|totals| (*amount, totals))
+            })
+            .collect::<Result<Vec<_>, _>>()?;
         let back = question.returns.then(|| search(&hops, &sources, asked(Journey::Return, None), progress)).transpose()?;
         let mobility = question.mobility.then(|| mobility(&hops, progress)).transpose()?;
         let hops_to = |goal: &Spot| {
             let nodes = out.path(&hops, goal.post);
-            nodes.map(|nodes| path_hops(&hops, &nodes, options.takeoff)).transpose()
+            let along = |nodes: Vec<Post>| match &aim {
+                Aim::Hops(_) => path_hops(&hops, &nodes, options.takeoff),
+                Aim::Least(..) => path_hops_by(&hops, &nodes, &objective, options.takeoff),
+            };
+            nodes.map(along).transpose()
         };
         let goal_hops = self.goals.iter().map(hops_to).collect::<Result<Vec<_>, _>>()?;
         let paths: Vec<_> = goal_hops.iter().map(|found| found.as_ref().map(|found| joined(&hops, found))).collect();
@@ -139,7 +215,7 @@ impl PreparedMap {
         }
         let predecessors = question.predecessors.then(|| out.predecessors(&hops, NO_PREDECESSOR));
         let warnings = self.refusals(&hops);
-        Ok(Found { out, back, mobility, predecessors, goal_hops, paths, warnings })
+        Ok(Found { out, back, mobility, predecessors, least, amounts, goal_hops, paths, warnings })
     }
 
     /// Warnings for starts and goals at which no hop can take off or land.
@@ -149,8 +225,7 @@ impl PreparedMap {
             let nearest = hops.nearest_usable(spot.post).map_or_else(
                 || "no post of the DEM is usable".to_owned(),
                 |node| {
-                    let post = hops.lattice().post(node);
-                    let at = self.dem().georeference().post(post.row, post.col);
+                    let at = hops.lattice().at(self.dem().georeference(), node);
                     format!("the nearest usable one is ({:.3}, {:.3}) m", at.x, at.y)
                 },
             );
@@ -162,6 +237,28 @@ impl PreparedMap {
             ))
         };
         self.starts.iter().chain(&self.goals).filter_map(refused).collect()
+    }
+
+    /// A warning where the nodes decide how short the hops of least energy are.
+    fn short_hops(&self, question: &MapQuestion<'_>, hops: &[Hop]) -> Option<String> {
+        /// The least number of nodes at which they do not decide.
+        const SPANNED: f64 = 3.0;
+        let first = question.scenario.objective.as_ref().map(Objective::first);
+        let is_prepared = question.scenario.hopper.limits().preparation_energy_j.is_some_and(|energy_j| energy_j > 0.0);
+        if first != Some(Amount::Energy) || is_prepared || hops.is_empty() {
+            return None;
+        }
+        let nodes = self.nodes();
+        let runs_m: f64 = hops.iter().map(|hop| hop.landing.along_m - hop.takeoff.along_m).sum();
+        #[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
+        let spanned = runs_m / (hops.len() as f64 * nodes.dx_m().max(nodes.dy_m()));
+        (spanned < SPANNED).then(|| {
+            format!(
+                "hops to the goals span {spanned:.1} nodes on average, expected at least {SPANNED}: without an energy to prepare a hop the \
+                 least energy is nearly the same whatever the hops, so that the nodes decide how short they are; put hops first, or give \
+                 hopper.preparation_energy_j"
+            )
+        })
     }
 
     /// The ground as the warnings about trials see it.
@@ -184,7 +281,7 @@ impl PreparedMap {
     ) -> Result<Vec<Option<FlownPath>>, MapStudyError> {
         let options = &question.scenario.search;
         let replans = keys.policy == Policy::Replan;
-        let hops = replans.then(|| PostHops::new(self.planning.clone(), self.lattice.stride)).transpose()?;
+        let hops = replans.then(|| PostHops::over(self.planning.clone(), self.lattice)).transpose()?;
         let fly = |goal: &Spot, path: &HopPath| {
             let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
             let mut mission = Mission::over_dem(self.ground.clone(), path.clone(), first.takeoff, last.landing);
@@ -243,6 +340,7 @@ impl PreparedMap {
             hops: reached(out),
             hops_lower_bound: self.hops_lower_bound(goal),
             searched: out.searched(node),
+            objective_totals: Vec::new(),
             return_hops: back.map(reached),
             path: path.map(|path| HopRecord::rows(path, self.projection.as_ref().ok())).unwrap_or_default(),
             totals: path.map(|path| TotalsRecord { estimate, ..TotalsRecord::from(&path.totals) }),

@@ -2,6 +2,7 @@
 
 use super::super::{Defect, JourneyEnd, PipelineError};
 use crate::{
+    planner::{Amount, Objective, TooManyNodes, TotalBudget},
     quantity::MapPoint,
     reach::map::MapError,
     terrain::{MapBounds, TerrainError},
@@ -59,9 +60,10 @@ pub enum MapStudyError {
     },
     /// More memory than allowed.
     #[error(
-        "the map needs up to {} MiB ({posts} posts of the DEM, {nodes} posts of the map), expected at most {} MiB: take a greater stride, \
+        "the map needs up to {} MiB ({posts} posts of the DEM, {nodes} {} of the map), expected at most {} MiB: take {}, \
          a part of the DEM (gdal_translate -projwin) or a coarser one (gdalwarp -tr), ask for fewer maps at once, or allow more",
-        needed_bytes.div_ceil(1 << 20), allowed_bytes >> 20
+        needed_bytes.div_ceil(1 << 20), if nodes > posts { "nodes" } else { "posts" }, allowed_bytes >> 20,
+        if nodes > posts { "a larger spacing of nodes" } else { "a greater stride" }
     )]
     TooMuchMemory {
         /// The bytes needed at most.
@@ -70,8 +72,37 @@ pub enum MapStudyError {
         allowed_bytes: u64,
         /// Posts of the DEM.
         posts: usize,
-        /// Posts of the map.
+        /// Nodes of the map.
         nodes: usize,
+    },
+    /// More nodes than can be numbered.
+    #[error(transparent)]
+    Nodes(#[from] TooManyNodes),
+    /// A budget of another amount than the one that the map has least.
+    #[error(
+        "{} = {} limits the {}, but this map has the least {} first, and keeps a budget of that amount alone: put {} first in search.objective, \
+         or leave the budget out; a path from a start to one goal keeps any", budget.key, budget.most, budget.amount.words(),
+        first.words(), budget.amount
+    )]
+    OtherBudget {
+        /// The budget.
+        budget: TotalBudget,
+        /// What the map has least.
+        first: Amount,
+    },
+    /// A least effort among fewest hops beside an objective.
+    #[error(
+        "found an effort beside search.objective = {objective}, expected one of the two: an effort is the least among paths of fewest hops"
+    )]
+    EffortBesideObjective {
+        /// The objective.
+        objective: Objective,
+    },
+    /// Totals of risk, which no map counts.
+    #[error("found the totals of {amount} along the paths of a map, expected an amount of a hop by itself: any other")]
+    NoRisk {
+        /// The amount.
+        amount: Amount,
     },
     /// The search.
     #[error(transparent)]

@@ -3,7 +3,7 @@
 use super::{MapQuestion, MapStudyError};
 use crate::{
     ground::DemGround,
-    reach::map::{HopMap, Mobility, PostHops, PostHopsSize},
+    reach::map::{HopMap, LeastTotals, Mobility, NodeLattice, PostHops, PostHopsSize},
     report::{SizeAnswer, SizeRecord},
     terrain::Samples,
     uncertainty::Policy,
@@ -21,7 +21,7 @@ const REPLANNING_BYTES_PER_NODE: usize = 32;
 pub struct MapMemory {
     /// Posts of the DEM.
     pub posts: usize,
-    /// Posts of the map.
+    /// Nodes of the map.
     pub nodes: usize,
     /// Pairs of posts that one hop may join, at most.
     pub pairs_max: u64,
@@ -40,16 +40,24 @@ impl MapMemory {
     ///
     /// # Errors
     /// [`MapStudyError::Map`], if one hop reaches too many posts.
-    pub(super) fn of(question: &MapQuestion<'_>, ground: &DemGround) -> Result<Self, MapStudyError> {
+    pub(super) fn of(question: &MapQuestion<'_>, ground: &DemGround, lattice: NodeLattice) -> Result<Self, MapStudyError> {
         let dem = ground.terrain().dem();
         let posts = dem.rows() * dem.cols();
         let of_post = match dem.samples() {
             Samples::Single(_) => size_of::<f32>(),
             Samples::Double(_) => size_of::<f64>(),
         };
-        let PostHopsSize { nodes, offsets, bytes, preparation_bytes } = PostHops::size(ground, question.stride)?;
+        let PostHopsSize { nodes, offsets, bytes, preparation_bytes } = PostHops::size(ground, lattice)?;
         let has_many = question.starts.len() > 1;
         let mut of_node = HopMap::bytes_per_node(question.effort, has_many);
+        let objective = question.scenario.objective.as_ref();
+        if let Some(objective) = objective {
+            // The totals, and those of each amount by itself.
+            let amounts = objective.amounts().len();
+            of_node += LeastTotals::bytes_per_node(amounts, has_many) + amounts * size_of::<f64>();
+        }
+        // Each amount with what every last hop takes of it.
+        of_node += (question.amounts.len() + usize::from(!question.amounts.is_empty())) * size_of::<f64>();
         if question.returns {
             of_node += HopMap::bytes_per_node(false, has_many);
         }
@@ -67,14 +75,15 @@ impl MapMemory {
         let nearest = if has_many { 2 * size_of::<i32>() } else { 0 };
         let mobility = if question.mobility { 2 * size_of::<f32>() } else { 0 };
         let predecessors = if question.predecessors { 2 * size_of::<i32>() } else { 0 };
-        let of_rasters = size_of::<i16>() + effort + returns + nearest + mobility + predecessors;
+        let amounts = 2 * size_of::<f32>() * question.amounts.len();
+        let of_rasters = size_of::<i16>() + amounts + effort + returns + nearest + mobility + predecessors;
         Ok(Self {
             posts,
             nodes,
             pairs_max: (nodes as u64).saturating_mul(offsets as u64),
             elevations_bytes: (posts * of_post) as u64,
             tables_bytes: bytes.saturating_add(preparation_bytes),
-            maps_bytes: (nodes * (of_node + working)) as u64,
+            maps_bytes: (nodes * (of_node + working) + objective.map_or(0, |_| LeastTotals::round_bytes(offsets))) as u64,
             rasters_bytes: (nodes * of_rasters) as u64,
         })
     }

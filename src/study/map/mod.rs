@@ -3,6 +3,7 @@
 //! [`map`] answers a [`MapQuestion`] at once. A caller that has something to do in between, such as opening its files, calls
 //! [`PreparedMap::new`], which reads the terrain and finds the posts, and then [`PreparedMap::answered`].
 
+mod aim;
 mod answered;
 mod error;
 mod memory;

@@ -1,13 +1,21 @@
 //! The terrain of a map, and the posts of its starts and goals.
 
+use std::borrow::Cow;
+
 use super::{MapMemory, MapQuestion, MapStudyError, NamedPlace};
 use crate::{
-    graph::ReliabilityUse,
+    graph::{PointSpacing, ReliabilityUse},
     ground::DemGround,
+    planner::{NodesPerPost, SurfaceLattice, SurfaceNodes},
     quantity::MapPoint,
     reach::map::{NodeLattice, Post},
     scenario::Scenario,
-    study::{DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body, pipeline::planned_over, with_measured_errors},
+    study::{
+        DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body,
+        nodes::{coarse_nodes, level_hop_m, post_spacing_m},
+        pipeline::planned_over,
+        with_measured_errors,
+    },
     terrain::{Dem, GeoReference, MapProjection, NoProjection, check_map_scale},
     uncertainty::Uncertainty,
 };
@@ -36,7 +44,7 @@ pub struct PreparedMap {
     pub planning: DemGround,
     /// The projection of its map, or why it has none.
     pub projection: Result<MapProjection, NoProjection>,
-    /// The posts of the map.
+    /// The nodes of the map.
     pub lattice: NodeLattice,
     /// The starts, in the order given.
     pub starts: Vec<Spot>,
@@ -55,6 +63,7 @@ impl PreparedMap {
     /// [`MapStudyError`], also if the map needs more memory than the question allows: before the elevations are read if these alone do.
     pub fn new(question: &MapQuestion<'_>) -> Result<Self, MapStudyError> {
         let MapQuestion { scenario, base, dem: file, stride, .. } = question;
+        let aim = question.aim()?;
         if question.starts.is_empty() {
             return Err(MapStudyError::NoStart);
         }
@@ -65,18 +74,19 @@ impl PreparedMap {
         let (dem, mut warnings) = dem_on_body(scenario, file)?;
         let overlays = Overlays::read(scenario, base, Some(&dem.georeference().coordinate_system), dem.bounds())?;
         let projection = dem.georeference().projection();
-        let lattice = NodeLattice::new(&dem, *stride);
+        let ground = overlays.ground(dem.clone(), scenario);
+        let planning = planned_over(&ground, scenario);
+        let lattice = question.lattice(&planning)?;
         let spots = |end, places: &[NamedPlace]| -> Result<Vec<Spot>, MapStudyError> {
             places.iter().map(|place| spot(end, place, &dem, &projection, lattice)).collect()
         };
         let (starts, goals) = (spots(JourneyEnd::Start, &question.starts)?, spots(JourneyEnd::Goal, &question.goals)?);
         for spot in starts.iter().chain(&goals) {
-            let Post { row, col } = lattice.post(spot.post);
-            if dem.elevation(row, col).is_none() {
+            if lattice.position(&dem, spot.post).is_none() {
                 return Err(MapStudyError::NoElevation { name: spot.name.clone(), end: spot.end, post: spot.at });
             }
         }
-        check_distinct_posts(&dem, lattice.stride, &starts.iter().chain(&goals).collect::<Vec<_>>())?;
+        check_distinct_posts(&dem, lattice, &starts.iter().chain(&goals).collect::<Vec<_>>())?;
         warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
         warnings.extend(coarse_dem_warning(&scenario.hopper, dem.georeference()));
         for start in &starts {
@@ -84,9 +94,9 @@ impl PreparedMap {
             warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
         }
         warnings.extend(starts_of_no_post(&starts));
-        let ground = overlays.ground(dem, scenario);
-        let planning = planned_over(&ground, scenario);
-        let memory = MapMemory::of(question, &planning)?;
+        warnings.extend(question.propellant_warning(&aim));
+        warnings.extend(question.node_warnings(&planning, lattice));
+        let memory = MapMemory::of(question, &planning, lattice)?;
         memory.check(question.memory_max_bytes)?;
         Ok(Self { ground, planning, projection, lattice, starts, goals, warnings, memory })
     }
@@ -96,13 +106,54 @@ impl PreparedMap {
         self.ground.terrain().dem()
     }
 
-    /// The map of the posts.
+    /// The surface with a post at every node, where nodes are finer than posts; otherwise the DEM.
+    ///
+    /// # Errors
+    /// [`MapStudyError::Terrain`], as [`Dem::finer`].
+    pub fn finest(&self) -> Result<Cow<'_, Dem>, MapStudyError> {
+        Ok(match self.lattice.per_post {
+            1 => Cow::Borrowed(self.dem()),
+            per_post => Cow::Owned(self.dem().finer(per_post)?),
+        })
+    }
+
+    /// The map of the nodes.
     pub fn nodes(&self) -> GeoReference {
-        self.dem().georeference().every(self.lattice.stride)
+        self.lattice.map(self.dem().georeference())
     }
 }
 
 impl MapQuestion<'_> {
+    /// The nodes of the map: every `stride`-th post, or the lattice as fine as the spacing of nodes asks; without one the posts.
+    fn lattice(&self, ground: &DemGround) -> Result<NodeLattice, MapStudyError> {
+        let (dem, post_spacing_m) = (ground.terrain().dem(), post_spacing_m(ground));
+        let n = match self.scenario.search.spacing {
+            _ if self.auto_nodes => NodesPerPost::auto(level_hop_m(ground), post_spacing_m),
+            Some(PointSpacing::AtMostM(spacing_m)) => NodesPerPost::at_most_m(spacing_m, post_spacing_m),
+            Some(PointSpacing::PerSegment(_)) | None => NodesPerPost::at_most_m(post_spacing_m, post_spacing_m),
+        };
+        if self.stride > 1 || n.get() == 1 {
+            return Ok(NodeLattice::new(dem, self.stride));
+        }
+        SurfaceNodes::check(&SurfaceLattice::new(dem, n), 0)?;
+        Ok(NodeLattice::finer(dem, n.get() as usize))
+    }
+
+    /// Warnings where one hop spans few nodes, and where a stride takes the place of a spacing.
+    fn node_warnings(&self, ground: &DemGround, lattice: NodeLattice) -> Vec<String> {
+        let nodes = lattice.map(ground.terrain().dem().georeference());
+        let mut warnings: Vec<String> = coarse_nodes(ground, "the map", nodes.dx_m().max(nodes.dy_m())).into_iter().collect();
+        if self.stride > 1
+            && let Some(PointSpacing::AtMostM(spacing_m)) = self.scenario.search.spacing
+        {
+            warnings.push(format!(
+                "search.node_spacing_max_m = {spacing_m} has no effect on a map of every {} posts: leave out the stride, or the spacing",
+                self.stride
+            ));
+        }
+        warnings
+    }
+
     /// The scenario whose trials are flown, with its measured errors, and warnings about these; `None` if no trials are wanted.
     ///
     /// # Errors
@@ -131,12 +182,12 @@ fn spot(
         return Err(MapStudyError::OffMap { name: name.clone(), at: asked, bounds });
     }
     let post = lattice.nearest(map, asked);
-    Ok(Spot { name: name.clone(), end, asked, post, at: map.every(lattice.stride).post(post.row, post.col) })
+    Ok(Spot { name: name.clone(), end, asked, post, at: lattice.at(map, post) })
 }
 
 /// Checks that positions at different posts of the DEM have different posts of the map.
-fn check_distinct_posts(dem: &Dem, stride: usize, spots: &[&Spot]) -> Result<(), MapStudyError> {
-    let every_post = NodeLattice::new(dem, 1);
+fn check_distinct_posts(dem: &Dem, lattice: NodeLattice, spots: &[&Spot]) -> Result<(), MapStudyError> {
+    let (every_post, stride) = (NodeLattice::new(dem, 1), lattice.stride);
     for (i, spot) in spots.iter().enumerate() {
         let post = |spot: &Spot| every_post.nearest(dem.georeference(), spot.asked);
         if let Some(other) = spots[..i].iter().find(|other| other.post == spot.post && post(other) != post(spot)) {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::{scenario::Scenario, terrain::MapPlace};
+use crate::{planner::Amount, scenario::Scenario, terrain::MapPlace};
 
 /// A position, and what the caller calls it in messages: a key, an option, or a line of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,8 +27,10 @@ pub struct MapQuestion<'a> {
     pub starts: Vec<NamedPlace>,
     /// The goals, whose paths are planned and flown again.
     pub goals: Vec<NamedPlace>,
-    /// Every `stride`-th post is a post of the map; 0 counts as 1.
+    /// Every `stride`-th post is a node of the map; 0 counts as 1. With a stride, `search.node_spacing_max_m` has no effect.
     pub stride: usize,
+    /// The lattice of nodes is as fine as one hop wants it, in place of `search.node_spacing_max_m`.
+    pub auto_nodes: bool,
     /// Also the least effort, as the scenario names it, among paths of fewest hops.
     pub effort: bool,
     /// Also the fewest hops back to the nearest start.
@@ -39,8 +41,10 @@ pub struct MapQuestion<'a> {
     pub predecessors: bool,
     /// Also trials along the path to every goal.
     pub trials: bool,
-    /// Posts that need more hops are not searched.
+    /// Posts that need more hops are not searched; as a budget of hops.
     pub hops_max: Option<i16>,
+    /// Also the totals of these amounts along the path to every node.
+    pub amounts: Vec<Amount>,
     /// The most memory, bytes, that the map may need.
     pub memory_max_bytes: Option<u64>,
 }
