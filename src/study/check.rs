@@ -2,7 +2,8 @@
 
 use super::{
     Case, CaseError, Commands, JourneyEnd, JourneyError, Proof,
-    free_route::{FoundRoute, along_transect, found_route},
+    free_route::{FoundRoute, along_transect},
+    free_trials::route_with_success,
     journey::Searched,
 };
 #[cfg(feature = "plot")]
@@ -87,7 +88,7 @@ fn check_free(case: &Case, proof: Option<Proof>, progress: &dyn Progress) -> Res
     if proof.is_some() {
         along_transect(&case.scenario, "bounds that hold at any resolution are proved")?;
     }
-    let FoundRoute { case, ends, check, path, warnings, .. } = found_route(case, progress)?;
+    let (FoundRoute { case, ends, check, path, warnings, .. }, _) = route_with_success(case, progress)?;
     Ok(Checked { case, pairs: vec![CheckedPair { ends, answer: check, path, bounds: None }], warnings })
 }
 

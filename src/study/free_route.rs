@@ -3,21 +3,23 @@
 use std::path::Path;
 
 use super::{
-    Case, CaseError, Commands, Defect, JourneyError, Prepared, SimulateError, dem_ground::dem_ground, pipeline::planned_over,
+    Case, CaseError, Commands, Defect, JourneyError, Prepared, SimulateError, dem_ground::dem_ground, free_trials::commanded,
+    pipeline::planned_over,
 };
 use crate::{
-    ballistics::PathBounds,
+    ballistics::{PathBounds, TakeoffChoice},
     chain::Station,
     graph::{self, Edge, Leg, NodeSet, Outcome, PointSpacing, RefusalCounts, ReliabilityUse, SearchError},
     ground::{ContactPoint, DemGround, MapPosition, Surface},
     hop::HopTest,
-    path::{Hop, HopPath, execute},
+    path::{Execution, Hop, HopPath, execute},
     planner::{FreeRoute, NodesPerPost, RouteError, RouteGoal, SurfaceLattice, SurfaceNodes, free_route},
     progress::Progress,
     quantity::{MapPoint, VertexId},
     report::{CheckAnswer, DeratingRecord, RouteKind, RouteRecord},
     scenario::{Route, Scenario, TerrainSource},
-    terrain::MapPlace,
+    terrain::{Dem, MapPlace},
+    world::Hopper,
 };
 
 /// Why a free route has no answer.
@@ -87,9 +89,6 @@ pub(super) fn found_route(case: &Case, progress: &dyn Progress) -> Result<FoundR
     if case.scenario.plans_by_objective() {
         along_transect(&case.scenario, "a path by an objective or within budgets is found")?;
     }
-    if case.scenario.budget.estimated_success_min.is_some() {
-        along_transect(&case.scenario, "a path with a least success is found")?;
-    }
     let mut warnings = warnings(&case.scenario);
     let case = case.with_commands(Commands::Exact)?;
     let ends = case.ends()?;
@@ -123,9 +122,9 @@ pub(super) fn found_route(case: &Case, progress: &dyn Progress) -> Result<FoundR
         let check = checked(&test, &ends, &found);
         return Ok(FoundRoute { test, ends, found, check, path: None, warnings, case });
     };
-    let unrolled = unrolled(&case, places)?;
+    let unrolled = unrolled(&case, places)?.asked_by(&case);
     let test = unrolled.hop_test();
-    let legs = legs(&test, places)?;
+    let (legs, cost) = commanded(&unrolled, &test, (legs(&test, places)?, route.cost))?;
     let ends = match (legs.first(), legs.last()) {
         (Some(first), Some(last)) => (first.takeoff, last.landing),
         _ => unrolled.ends()?,
@@ -136,20 +135,25 @@ pub(super) fn found_route(case: &Case, progress: &dyn Progress) -> Result<FoundR
         verify(unrolled.planning(), &ground, path, ends)?;
         warnings.extend(case.scenario.path_warnings(path));
     }
-    let found = answer(Outcome::Path { legs, cost: route.cost });
+    let found = answer(Outcome::Path { legs, cost });
     let check = checked(&test, &ends, &found).with_path(path.as_ref());
-    Ok(FoundRoute { test, ends, found, check, path, warnings, case: unrolled.asked_by(&case) })
+    Ok(FoundRoute { test, ends, found, check, path, warnings, case: unrolled })
 }
 
 /// What a free route leaves out of a scenario.
 fn warnings(scenario: &Scenario) -> Vec<String> {
     let mut warnings = Vec::new();
     if scenario.uncertainty.is_some() && scenario.risk != ReliabilityUse::Ignored {
-        warnings.push("a free route is searched by hops and effort: the errors of [uncertainty] have no effect on it".to_owned());
+        let commands = if scenario.search.takeoff == TakeoffChoice::MostReliable { "choose the command of each of its hops, and " } else { "" };
+        warnings.push(format!(
+            "a free route is searched by hops and effort: the errors of [uncertainty] {commands}count where a robot replans, but do not \
+             choose the places that the route hops to"
+        ));
     }
     if !scenario.hopper.limits().steps.is_continuous() {
         warnings.push(
-            "a free route has exact commands, and this machine takes its commands in steps, which may miss a landing or break a limit"
+            "a free route and its trials have exact commands, and this machine takes its commands in steps, which may miss a landing or \
+             break a limit"
                 .to_owned(),
         );
     }
@@ -171,12 +175,7 @@ fn planning_ground(case: &Case) -> Result<DemGround, FreeRouteError> {
 /// The lattice as fine as the scenario says, start and goal, and the nodes of the straight slice between them.
 fn nodes(case: &Case, ground: &DemGround, ends: [MapPoint; 2]) -> Result<SurfaceNodes, JourneyError> {
     let (dem, chain) = (ground.terrain().dem(), &case.planning().chain);
-    let post_spacing_m = dem.georeference().dx_m().max(dem.georeference().dy_m());
-    let n = match case.scenario.search.spacing {
-        Some(PointSpacing::AtMostM(spacing_m)) => NodesPerPost::at_most_m(spacing_m, post_spacing_m),
-        Some(PointSpacing::PerSegment(_)) | None => NodesPerPost::auto(level_hop_m(ground), post_spacing_m),
-    };
-    let lattice = SurfaceLattice::new(dem, n);
+    let lattice = SurfaceLattice::new(dem, nodes_per_post(case.scenario.search.spacing, dem, level_hop_m(ground)));
     // Before the slice is filled with as many.
     SurfaceNodes::check(&lattice, 0).map_err(RouteError::from)?;
     let of_slice = NodeSet::of_chain(chain, PointSpacing::AtMostM(lattice.spacing_m())).map_err(SearchError::from)?;
@@ -184,11 +183,25 @@ fn nodes(case: &Case, ground: &DemGround, ends: [MapPoint; 2]) -> Result<Surface
     SurfaceNodes::new(ground, lattice, ends.into_iter().chain(places)).map_err(|error| RouteError::from(error).into())
 }
 
-/// How far one hop goes over level ground at most, by the speeds, m.
+/// As many nodes a post spacing as the scenario says; by itself, as a hop of this length over level ground needs.
+pub(super) fn nodes_per_post(spacing: Option<PointSpacing>, dem: &Dem, level_hop_m: f64) -> NodesPerPost {
+    let post_spacing_m = dem.georeference().dx_m().max(dem.georeference().dy_m());
+    match spacing {
+        Some(PointSpacing::AtMostM(spacing_m)) => NodesPerPost::at_most_m(spacing_m, post_spacing_m),
+        Some(PointSpacing::PerSegment(_)) | None => NodesPerPost::auto(level_hop_m, post_spacing_m),
+    }
+}
+
+/// How far one hop over this ground goes over a level at most, by the speeds, m.
 fn level_hop_m(ground: &DemGround) -> f64 {
-    let limits = ground.hopper().limits();
+    level_hop_of_m(ground.hopper(), ground.gravity_m_s2())
+}
+
+/// How far one hop of a machine goes over level ground at most, by the speeds, m.
+pub(super) fn level_hop_of_m(hopper: &Hopper, gravity_m_s2: f64) -> f64 {
+    let limits = hopper.limits();
     let speed_m_s = limits.takeoff_speed_max_m_s.min(limits.arc_landing_speed_max_m_s());
-    speed_m_s / ground.gravity_m_s2() * speed_m_s
+    speed_m_s / gravity_m_s2 * speed_m_s
 }
 
 fn lower_bound(ground: &DemGround, ends: [MapPoint; 2]) -> Option<u64> {
@@ -224,10 +237,10 @@ fn coarse_nodes(ground: &DemGround, node_spacing_m: f64) -> Option<String> {
 }
 
 /// The same case over the chain along the places of a route: one slice from each to the next, unrolled.
-fn unrolled(case: &Case, places: &[MapPosition]) -> Result<Case, JourneyError> {
+pub(super) fn unrolled(case: &Case, places: &[MapPosition]) -> Result<Case, CaseError> {
     let (Some(first), Some(last), Some(TerrainSource::Dem { path, .. })) = (places.first(), places.last(), &case.scenario.terrain)
     else {
-        return Err(FreeRouteError::NoDem.into());
+        return Err(CaseError::NoTerrain);
     };
     let metres = |place: &MapPosition| MapPlace::Metres(place.at);
     let scenario = Scenario {
@@ -238,7 +251,7 @@ fn unrolled(case: &Case, places: &[MapPosition]) -> Result<Case, JourneyError> {
         goal_x_m: None,
         ..case.scenario.clone()
     };
-    Ok(Case::new(scenario, Path::new(&case.base), Commands::Exact)?)
+    Case::new(scenario, Path::new(&case.base), Commands::Exact)
 }
 
 /// One leg from each place to the next, along the unrolled chain.
@@ -264,8 +277,12 @@ fn legs(test: &HopTest, places: &[MapPosition]) -> Result<Vec<Leg>, FreeRouteErr
 /// Flies a path again by the independent checker: along its unrolled chain, and over the DEM.
 fn verify(prepared: &Prepared, ground: &DemGround, path: &HopPath, ends: (Station, Station)) -> Result<(), FreeRouteError> {
     Defect::unless_passed(&prepared.execute(path, ends))?;
+    Ok(Defect::unless_passed(&execute_over_dem(ground, path))?)
+}
+
+/// A path flown again by the independent checker over the DEM.
+pub(super) fn execute_over_dem(ground: &DemGround, path: &HopPath) -> Execution {
     let on_map = |point: &ContactPoint| ContactPoint { station: None, ..*point };
     let hops = path.hops.iter().map(|hop| Hop { takeoff: on_map(&hop.takeoff), landing: on_map(&hop.landing), ..*hop });
-    let over_dem = HopPath::of_hops(hops.collect(), ground.hopper());
-    Ok(Defect::unless_passed(&execute(ground, &over_dem, None))?)
+    execute(ground, &HopPath::of_hops(hops.collect(), ground.hopper()), None)
 }

@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use super::{
     Case, CaseError, Commands, Front, FrontProblem, JourneyError, Proof, SimulateError,
     dem_ground::dem_ground,
-    free_route::{FoundRoute, along_transect, found_route},
+    free_route::{FoundRoute, along_transect},
+    free_trials::route_with_success,
     front::{amount_front, front},
     journey::Searched,
     to_go::ToGo,
@@ -142,9 +143,8 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
     let flown = path.as_ref().filter(|_| options.estimate);
     let estimate = flown.map(|path| searched.success_estimate(&test, ends, &case, path, progress)).transpose()?.flatten();
     let mut hops = path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default();
-    let of_hops = estimate.iter().flat_map(|estimate| estimate.margins.iter().zip(&estimate.of_hops));
-    for (hop, (margins, success)) in hops.iter_mut().zip(of_hops) {
-        (hop.margins_sigma, hop.success_estimated) = (Some(*margins), Some(*success));
+    if let Some(estimate) = &estimate {
+        estimate.add_to(&mut hops);
     }
     let estimate = estimate.map(|estimate| estimate.success);
     let mut front_search = None;
@@ -185,17 +185,27 @@ fn plan_free(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resu
     if options.front.is_some() {
         along_transect(&case.scenario, "a front of hops against another amount is found")?;
     }
-    let FoundRoute { case, test, ends, found, check, path, warnings } = found_route(case, progress)?;
+    let (route, mut searched) = route_with_success(case, progress)?;
+    let FoundRoute { case, test, ends, found, check, path, warnings } = route;
+    let flown = path.as_ref().filter(|_| options.estimate);
+    let estimate = flown.map(|path| searched.success_estimate(&test, ends, &case, path, progress)).transpose()?.flatten();
+    let mut hops = path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default();
+    let mut totals = path.as_ref().map(|path| TotalsRecord::from(&path.totals));
+    if let Some((estimate, totals)) = estimate.zip(totals.as_mut()) {
+        estimate.add_to(&mut hops);
+        totals.estimate = Some(estimate.success);
+        searched.to_go = searched.to_go.or(estimate.to_go);
+    }
     let answer = PlanAnswer {
         check,
         verified: path.is_some().then_some(true),
-        path: path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default(),
-        totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
+        path: hops,
+        totals,
         reliable_paths: Vec::new(),
         front: None,
         front_search: None,
     };
-    Ok(Planned { case, test, ends, found, path, answer, warnings, to_go: None })
+    Ok(Planned { case, test, ends, found, path, answer, warnings, to_go: searched.to_go })
 }
 
 impl Planned {
