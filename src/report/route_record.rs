@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::quantity::format_number;
+
 /// How a route over a DEM was searched, in any direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RouteRecord {
@@ -18,6 +20,34 @@ pub struct RouteRecord {
     pub reached_nodes: usize,
     /// The reached place nearest to the goal, [easting, northing, height], m.
     pub nearest_m: [f64; 3],
+}
+
+/// The nodes of free routes over which all values of a varied key are answered.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct QuestionRouteRecord {
+    /// `free`.
+    pub kind: RouteKind,
+    /// Nodes of the lattice for each post spacing.
+    pub nodes_per_post: usize,
+    /// The distance of neighbouring nodes of the lattice in a row or a column, m; the greater of both.
+    pub node_spacing_m: f64,
+    /// How far a hop goes over level ground at most, by the speeds, at the value with the shortest hops, for which the nodes were chosen, m;
+    /// null where the scenario gives their spacing.
+    pub shortest_level_hop_m: Option<f64>,
+}
+
+impl QuestionRouteRecord {
+    /// The nodes in words.
+    pub(super) fn sentence(&self) -> String {
+        let Self { kind: _, nodes_per_post, node_spacing_m, shortest_level_hop_m } = self;
+        let chosen = shortest_level_hop_m
+            .map(|hop_m| format!(", chosen for the value with the shortest hops, {} m over level ground", format_number(hop_m)))
+            .unwrap_or_default();
+        format!(
+            "free routes over the same nodes for all values: {nodes_per_post} for each post spacing, at most {} m apart{chosen}",
+            format_number(*node_spacing_m)
+        )
+    }
 }
 
 /// The kind of a route.

@@ -138,6 +138,13 @@ impl Case {
         Self { scenario: other.scenario.clone(), prepared, sliced: other.sliced.clone(), ground: Arc::clone(&other.ground), ..self }
     }
 
+    /// The same case between these stations of its chain.
+    pub(super) fn between(&self, (start, goal): (Station, Station)) -> Self {
+        let scenario = Scenario { start_x_m: Some(start.point.x_m), goal_x_m: Some(goal.point.x_m), ..self.scenario.clone() };
+        let prepared = Prepared { start: Some(start), goal: Some(goal), ..self.prepared.clone() };
+        Self { scenario, prepared, ..self.clone() }
+    }
+
     /// The same case for these commands: its chain is prepared again if they make a difference.
     ///
     /// # Errors

@@ -41,7 +41,9 @@ pub enum ExperimentError {
         problem: ConeProblem,
     },
     /// An experiment in the vertical plane of a transect, on a free route.
-    #[error("{experiment} {why}, and terrain.route is \"free\": set terrain.route = \"transect\" for it; sensitivity takes free routes")]
+    #[error(
+        "{experiment} {why}, and terrain.route is \"free\": set terrain.route = \"transect\" for it; sensitivity takes free routes"
+    )]
     TransectOnly {
         /// The experiment.
         experiment: Experiment,

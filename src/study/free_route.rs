@@ -144,7 +144,11 @@ pub(super) fn found_route(case: &Case, progress: &dyn Progress) -> Result<FoundR
 fn warnings(scenario: &Scenario) -> Vec<String> {
     let mut warnings = Vec::new();
     if scenario.uncertainty.is_some() && scenario.risk != ReliabilityUse::Ignored {
-        let commands = if scenario.search.takeoff == TakeoffChoice::MostReliable { "choose the command of each of its hops, and " } else { "" };
+        let commands = if scenario.search.takeoff == TakeoffChoice::MostReliable {
+            "choose the command of each of its hops, and "
+        } else {
+            ""
+        };
         warnings.push(format!(
             "a free route is searched by hops and effort: the errors of [uncertainty] {commands}count where a robot replans, but do not \
              choose the places that the route hops to"

@@ -21,11 +21,7 @@ use crate::{
 ///
 /// # Errors
 /// [`JourneyError`].
-pub(super) fn commanded(
-    case: &Case,
-    test: &HopTest,
-    (legs, cost): (Vec<Leg>, Cost),
-) -> Result<(Vec<Leg>, Cost), JourneyError> {
+pub(super) fn commanded(case: &Case, test: &HopTest, (legs, cost): (Vec<Leg>, Cost)) -> Result<(Vec<Leg>, Cost), JourneyError> {
     let Some(reliability) = reliability(case, false)?.filter(|_| legs.iter().all(|leg| leg.loft.is_none())) else {
         return Ok((legs, cost));
     };
@@ -53,13 +49,8 @@ pub(super) fn route_with_success(case: &Case, progress: &dyn Progress) -> Result
     let keys = scenario.uncertainty.as_ref();
     if let (Some(least), Some(path), Some(keys)) = (scenario.budget.estimated_success_min, &route.path, keys) {
         let ground = dem_ground(&route.case).map_err(Box::new)?;
-        let journey = FlownJourney {
-            scenario,
-            test: &route.test,
-            whole: route.case.whole_test(),
-            ends: route.ends,
-            ground: ground.as_ref(),
-        };
+        let journey =
+            FlownJourney { scenario, test: &route.test, whole: route.case.whole_test(), ends: route.ends, ground: ground.as_ref() };
         let flown = journey.success_of(&route.found, path, &keys.options(), progress).map_err(Box::new)?;
         let (success, hops) = (flown.0, path.hops.len() as u64);
         searched.success = Some(SuccessBudgetRecord::new(least, success >= least, Some((hops, success))));

@@ -74,7 +74,9 @@ pub enum ReadBackError {
         problem: OffChain,
     },
     /// A hop of a free route without its places on the map.
-    #[error("hop {hop} of the result has no places on the map, expected them for terrain.route = \"free\": give the JSON that chta wrote")]
+    #[error(
+        "hop {hop} of the result has no places on the map, expected them for terrain.route = \"free\": give the JSON that chta wrote"
+    )]
     NoPlaces {
         /// The number of the hop, from 1.
         hop: usize,
