@@ -19,6 +19,7 @@ mod goals;
 mod judge;
 mod local_reach;
 mod nodes;
+mod path_commands;
 mod post_costs;
 mod post_risks;
 pub mod proof;
@@ -50,6 +51,7 @@ pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchError, Sea
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};
 pub(crate) use {
     judge::{Judge, Judged, MapJudge},
+    path_commands::with_reliable_commands,
     reachable::reachable_nodes,
     search::search_one,
 };

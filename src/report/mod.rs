@@ -62,7 +62,7 @@ pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord
 pub use propellant_record::{PropellantShortage, StoresRecord};
 pub use reliability_record::{ReliablePathRecord, SuccessEstimate, reliable_paths_text};
 pub use require_answer::{BudgetsTry, RequireAnswer, RequireBudgetsRecord, RequireSuccessRecord, RequireTry, SuccessTry};
-pub use route_record::{RouteGapRecord, RouteKind, RouteRecord};
+pub use route_record::{QuestionRouteRecord, RouteGapRecord, RouteKind, RouteRecord};
 pub use sensitivity_answer::{SensitivityAnswer, SensitivityRow};
 pub use sigma_margins::SigmaMarginsRecord;
 pub use simulate_answer::{

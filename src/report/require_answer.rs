@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{DeratingRecord, GapRecord, HopRecord, ObjectiveRecord, SuccessBudgetRecord, TotalsRecord};
+use super::{DeratingRecord, GapRecord, HopRecord, ObjectiveRecord, QuestionRouteRecord, SuccessBudgetRecord, TotalsRecord};
 use crate::graph::proof::ProofVerdict;
 
 /// The answer of `chta require`.
@@ -19,6 +19,13 @@ pub struct RequireAnswer {
     pub unreachable_at: Option<f64>,
     /// The least capable value at which a path was found; null if no path was found in the range.
     pub reachable_at: Option<f64>,
+    /// Of free routes: the most capable value tried at which the goal was not reached over these nodes, which proves nothing; absent along a
+    /// transect, and where every value tried reaches it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub not_reached_at: Option<f64>,
+    /// Of free routes: the nodes of all values.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub route: Option<QuestionRouteRecord>,
     /// The least value of the range.
     pub from: f64,
     /// The greatest value of the range.

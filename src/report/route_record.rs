@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::limit_counts::LimitCounts;
+use crate::quantity::format_number;
 
 /// How a route over a DEM was searched, in any direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -43,6 +44,34 @@ pub struct RouteGapRecord {
     pub refusals: LimitCounts,
     /// The number of judged pairs with missing elevations between them.
     pub without_ground: u64,
+}
+
+/// The nodes of free routes over which all values of a varied key are answered.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct QuestionRouteRecord {
+    /// `free`.
+    pub kind: RouteKind,
+    /// Nodes of the lattice for each post spacing.
+    pub nodes_per_post: usize,
+    /// The distance of neighbouring nodes of the lattice in a row or a column, m; the greater of both.
+    pub node_spacing_m: f64,
+    /// How far a hop goes over level ground at most, by the speeds, at the value with the shortest hops, for which the nodes were chosen, m;
+    /// null where the scenario gives their spacing.
+    pub shortest_level_hop_m: Option<f64>,
+}
+
+impl QuestionRouteRecord {
+    /// The nodes in words.
+    pub(super) fn sentence(&self) -> String {
+        let Self { kind: _, nodes_per_post, node_spacing_m, shortest_level_hop_m } = self;
+        let chosen = shortest_level_hop_m
+            .map(|hop_m| format!(", chosen for the value with the shortest hops, {} m over level ground", format_number(hop_m)))
+            .unwrap_or_default();
+        format!(
+            "free routes over the same nodes for all values: {nodes_per_post} for each post spacing, at most {} m apart{chosen}",
+            format_number(*node_spacing_m)
+        )
+    }
 }
 
 /// The kind of a route.

@@ -173,12 +173,19 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     if let Some(derating) = &answer.derating {
         sheet.line(format_args!("{}", derating.sentence()));
     }
+    if let Some(route) = &answer.route {
+        sheet.line(format_args!("{}", route.sentence()));
+    }
     if let Some(success) = &answer.success {
         success_lines(&mut sheet, success, answer, &with_unit);
         return sheet.0;
     }
     if let Some(within) = &answer.within_budgets {
         budgets_lines(&mut sheet, within, answer, &with_unit);
+        return sheet.0;
+    }
+    if answer.route.is_some() {
+        free_route_lines(&mut sheet, answer, &with_unit);
         return sheet.0;
     }
     match answer.reachable_at {
@@ -221,6 +228,29 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     }
     sheet.line(format_args!("{} values tried, from {from} to {to}", answer.tries.len()));
     sheet.0
+}
+
+/// The least value whose free routes reach the goal, and the hops that it takes.
+fn free_route_lines(sheet: &mut Sheet, answer: &RequireAnswer, with_unit: &dyn Fn(f64) -> String) {
+    let (from, to) = (format_number(answer.from), with_unit(answer.to));
+    match answer.reachable_at {
+        Some(value) => {
+            let hops = answer.hops.unwrap_or(0);
+            sheet.line(format_args!(
+                "reached at {}, in at most {hops} hop{}: without a budget of hops the least value counts, however many hops it takes",
+                with_unit(value),
+                plural(hops)
+            ));
+        }
+        None => sheet.line(format_args!("not reached over these nodes at any value from {from} to {to}")),
+    }
+    if let Some(value) = answer.not_reached_at {
+        sheet.line(format_args!(
+            "not reached over these nodes at {}: more nodes may find a path, and nothing is proved",
+            with_unit(value)
+        ));
+    }
+    sheet.line(format_args!("{} values tried, from {from} to {to}", answer.tries.len()));
 }
 
 /// The least value with a path within the budgets, and what was tried where that does not hold from there on.

@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    EffortRecord, MarginsRecord, ObjectiveRecord, SuccessBudgetRecord, TotalsRecord,
+    EffortRecord, MarginsRecord, ObjectiveRecord, QuestionRouteRecord, SuccessBudgetRecord, TotalsRecord,
     compare_answer::{MARGIN_COLUMNS, TOTALS_COLUMNS, margin_numbers, totals_numbers},
     stated::stated,
 };
@@ -21,6 +21,9 @@ use crate::graph::proof::ProofVerdict;
 pub struct TradeAnswer {
     /// The varied keys: one or two.
     pub vary: Vec<SweptKeyRecord>,
+    /// Of free routes: the nodes of all cells; absent along a transect, and where their spacing is varied.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub route: Option<QuestionRouteRecord>,
     /// One row for each cell; the last key changes fastest.
     pub rows: Vec<TradeRow>,
 }
@@ -203,6 +206,9 @@ impl TradeAnswer {
         }
         if without_path(true) {
             text.push_str("\nx: proved, there is no path\n");
+        }
+        if let Some(route) = &self.route {
+            let _ = writeln!(text, "\n{}; -: not reached over these nodes, which is no proof", route.sentence());
         }
         // Of many cells with the same reason, the first.
         let mut reasons: Vec<&str> = Vec::new();

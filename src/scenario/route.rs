@@ -45,7 +45,6 @@ pub(super) fn route(entries: &mut Entries, terrain: Option<&TerrainSource>) -> R
     let others = [
         ("terrain", "via_m", "a free route bends where it has to: remove it, or route"),
         ("terrain", "via_lonlat_deg", "a free route bends where it has to: remove it, or route"),
-        ("budget", "estimated_success_min", "a free route is searched by hops and effort alone: remove it, or route"),
     ];
     for (table, name, help) in others {
         if entries.value(table, name).is_some() {

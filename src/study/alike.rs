@@ -2,8 +2,8 @@
 
 use super::Prepared;
 use crate::{
-    scenario::Scenario,
-    world::{Hopper, HopperLimits},
+    scenario::{Route, Scenario},
+    world::{Hopper, HopperLimits, SurfaceProperties},
 };
 
 /// Whether two scenarios put the same limits on every hop between the same ends over the same points: ground, hopper and gravity.
@@ -44,4 +44,11 @@ pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &P
         && (on_a.start, on_a.goal) == (on_b.start, on_b.goal)
         && on_a.chain.segments() == on_b.chain.segments()
         && on_a.chain.geometry().vertices() == on_b.chain.geometry().vertices()
+        && (a.route == Route::Transect || over_dem(a) == over_dem(b))
+}
+
+/// What limits hops beside the line of a slice too: the speeds, and what friction rasters leave open.
+fn over_dem(scenario: &Scenario) -> (SurfaceProperties, [f64; 2]) {
+    let (limits, cap_m_s) = (scenario.hopper.limits(), scenario.body.gravity.speed_cap_m_s());
+    (scenario.surface, [limits.takeoff_speed_max_m_s, limits.landing_speed_max_m_s].map(|speed_m_s| speed_m_s.min(cap_m_s)))
 }

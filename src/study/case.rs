@@ -132,9 +132,17 @@ impl Case {
         Ok(Self { prepared, scenario, base: base.to_path_buf(), derated, commands, sliced, ground })
     }
 
-    /// The same chain for the question of another case, whose scenario it then states.
+    /// The same chain for the question of another case, whose scenario and warnings about the input it then states.
     pub(super) fn asked_by(self, other: &Self) -> Self {
-        Self { scenario: other.scenario.clone(), sliced: other.sliced.clone(), ground: Arc::clone(&other.ground), ..self }
+        let prepared = Prepared { warnings: other.prepared.warnings.clone(), ..self.prepared };
+        Self { scenario: other.scenario.clone(), prepared, sliced: other.sliced.clone(), ground: Arc::clone(&other.ground), ..self }
+    }
+
+    /// The same case between these stations of its chain.
+    pub(super) fn between(&self, (start, goal): (Station, Station)) -> Self {
+        let scenario = Scenario { start_x_m: Some(start.point.x_m), goal_x_m: Some(goal.point.x_m), ..self.scenario.clone() };
+        let prepared = Prepared { start: Some(start), goal: Some(goal), ..self.prepared.clone() };
+        Self { scenario, prepared, ..self.clone() }
     }
 
     /// The same case for these commands: its chain is prepared again if they make a difference.

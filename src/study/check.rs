@@ -2,7 +2,8 @@
 
 use super::{
     Case, CaseError, Commands, JourneyEnd, JourneyError, Proof,
-    free_route::{FoundRoute, along_transect, found_route},
+    free_route::{FoundRoute, along_transect},
+    free_trials::route_with_success,
     journey::Searched,
 };
 #[cfg(feature = "plot")]
@@ -87,17 +88,30 @@ fn check_free(case: &Case, proof: Option<Proof>, progress: &dyn Progress) -> Res
     if proof.is_some() {
         along_transect(&case.scenario, "bounds that hold at any resolution are proved")?;
     }
-    let FoundRoute { case, ends, check, path, warnings, .. } = found_route(case, progress)?;
+    let (FoundRoute { case, ends, check, path, warnings, .. }, _) = route_with_success(case, progress)?;
     Ok(Checked { case, pairs: vec![CheckedPair { ends, answer: check, path, bounds: None }], warnings })
 }
 
-/// Checks many pairs of start and goal.
+/// Checks many pairs of start and goal: positions along the chain, over a free route along the straight slice.
 ///
 /// # Errors
 /// [`CheckError`].
 pub fn check_pairs(case: &Case, pairs: &[StartGoal], proof: Option<Proof>, progress: &dyn Progress) -> Result<Checked, CheckError> {
-    along_transect(&case.scenario, "many pairs of start and goal are checked")?;
-    checked(case, &stations(case, pairs)?, proof, progress)
+    let ends = stations(case, pairs)?;
+    if case.scenario.route == Route::Transect {
+        return checked(case, &ends, proof, progress);
+    }
+    let mut all = Checked { case: case.clone(), pairs: Vec::with_capacity(pairs.len()), warnings: Vec::new() };
+    for ends in ends {
+        let Checked { pairs, warnings, .. } = check_free(&case.between(ends), proof, progress)?;
+        all.pairs.extend(pairs);
+        for warning in warnings {
+            if !all.warnings.contains(&warning) {
+                all.warnings.push(warning);
+            }
+        }
+    }
+    Ok(all)
 }
 
 /// The stations of all pairs.

@@ -15,6 +15,7 @@ use crate::{
     path::{Hop, PathError, generate},
     progress::Progress,
     report::{ConeWidthAnswer, SensitivityAnswer, WorstDriftAnswer},
+    scenario::Route,
     uncertainty::experiments::{
         CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift,
     },
@@ -38,6 +39,16 @@ pub enum ExperimentError {
         share: f64,
         /// The problem.
         problem: ConeProblem,
+    },
+    /// An experiment in the vertical plane of a transect, on a free route.
+    #[error(
+        "{experiment} {why}, and terrain.route is \"free\": set terrain.route = \"transect\" for it; sensitivity takes free routes"
+    )]
+    TransectOnly {
+        /// The experiment.
+        experiment: Experiment,
+        /// What it needs of a transect, with its verb.
+        why: &'static str,
     },
     /// Trials of a scenario without errors.
     #[error("{experiment} flies trials, but the scenario has no [uncertainty]: add its deviations and goal_tolerance_m")]
@@ -119,6 +130,9 @@ pub fn experiment(
     reading: DriftReading,
     progress: &dyn Progress,
 ) -> Result<Option<ExperimentAnswer>, ExperimentError> {
+    if let Some(why) = in_plane(which).filter(|_| planned.case.scenario.route == Route::Free) {
+        return Err(ExperimentError::TransectOnly { experiment: which, why });
+    }
     let Some(path) = planned.path.as_ref().filter(|path| !path.hops.is_empty()) else {
         return Ok(None);
     };
@@ -133,6 +147,19 @@ pub fn experiment(
         Experiment::Sensitivity => ExperimentAnswer::Sensitivity(sensitivity(planned, path, progress)?),
     };
     Ok(Some(answer))
+}
+
+/// What an experiment of the paper needs of the vertical plane of a transect; `None` if it takes paths in any direction.
+const fn in_plane(which: Experiment) -> Option<&'static str> {
+    match which {
+        Experiment::WorstDrift => {
+            Some("follows every flight along the ground ahead of it, in one plane, and a free route turns where it lands")
+        }
+        Experiment::ConeWidth => {
+            Some("plans again with narrower cones of the segments of one slice, and a free route is planned over the whole dem")
+        }
+        Experiment::Sensitivity => None,
+    }
 }
 
 /// Plans and flies with successively narrower cones, on the same draws.

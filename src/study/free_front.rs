@@ -31,7 +31,7 @@ pub(super) fn free_front(
     let front = front_of_routes(&search.ground, &search.nodes, &goal, (amount, &question, &hops_max), progress)?;
     let mut rows = Vec::new();
     for path in &front.paths {
-        let Some(hops) = search.unrolled(path, commands)?.path else { continue };
+        let Some(hops) = search.flown(search.laid(path, commands)?)?.path else { continue };
         let is_planned = planned.is_some_and(|planned| are_the_same(planned, &hops));
         rows.push(amount_row(amount, (path.cost.hops(), &hops), is_planned));
     }

@@ -5,7 +5,8 @@ use std::path::Path;
 use super::{
     Case, CaseError, Commands, Defect, JourneyError, Prepared, SimulateError,
     dem_ground::dem_ground,
-    nodes::{coarse_nodes, level_hop_m, post_spacing_m},
+    free_trials::commanded,
+    nodes::{coarse_nodes, level_hop_m, nodes_per_post},
     objective,
     pipeline::planned_over,
 };
@@ -15,16 +16,17 @@ use crate::{
     graph::{self, Edge, Leg, NodeSet, Outcome, PointSpacing, RefusalCounts, ReliabilityUse, SearchError},
     ground::{ContactPoint, DemGround, MapPosition, Surface},
     hop::HopTest,
-    path::{Hop, HopPath, execute},
+    path::{Execution, Hop, HopPath, execute},
     planner::{
-        Amount, Budgets, FreeRoute, LabelCap, NodesPerPost, Objective, RouteError, RouteGoal, RoutePath, RouteQuestion,
-        SearchedCommands, SurfaceLattice, SurfaceNodes, free_route_by,
+        Amount, Budgets, FreeRoute, LabelCap, Objective, RouteError, RouteGoal, RoutePath, RouteQuestion, SearchedCommands,
+        SurfaceLattice, SurfaceNodes, free_route_by,
     },
     progress::Progress,
     quantity::{MapPoint, VertexId},
     report::{CheckAnswer, DeratingRecord, ObjectiveRecord, RouteGapRecord, RouteKind, RouteRecord},
     scenario::{Route, Scenario, TerrainSource},
-    terrain::MapPlace,
+    terrain::{Dem, MapPlace},
+    world::Hopper,
 };
 
 /// Why a free route has no answer.
@@ -131,12 +133,17 @@ impl FreeSearch {
         Ok(free_route_by(&self.ground, &self.nodes, &self.goal, &question, progress)?)
     }
 
-    /// A path unrolled to a chain, and flown again over it and over the DEM.
-    pub(super) fn unrolled(&self, path: &RoutePath, commands: SearchedCommands) -> Result<Unrolled, JourneyError> {
-        let case = unrolled(&self.case, &path.places)?;
+    /// A path on its unrolled chain, with the commands that the search chose.
+    pub(super) fn laid(&self, path: &RoutePath, commands: SearchedCommands) -> Result<Laid, JourneyError> {
+        let case = unrolled(&self.case, &path.places)?.asked_by(&self.case);
         let test = case.hop_test();
         let choices = (commands == SearchedCommands::Distinct).then_some(path.choices.as_slice());
         let legs = legs(&test, &path.places, choices)?;
+        Ok(Laid { case, test, legs })
+    }
+
+    /// A path flown again over its unrolled chain and over the DEM.
+    pub(super) fn flown(&self, Laid { case, test, legs }: Laid) -> Result<Unrolled, JourneyError> {
         let ends = match (legs.first(), legs.last()) {
             (Some(first), Some(last)) => (first.takeoff, last.landing),
             _ => case.ends()?,
@@ -172,7 +179,14 @@ impl FreeSearch {
     }
 }
 
-/// A route along its unrolled chain.
+/// A route on its unrolled chain.
+pub(super) struct Laid {
+    pub(super) case: Case,
+    pub(super) test: HopTest,
+    pub(super) legs: Vec<Leg>,
+}
+
+/// The same, flown.
 pub(super) struct Unrolled {
     pub(super) case: Case,
     pub(super) test: HopTest,
@@ -186,9 +200,6 @@ pub(super) struct Unrolled {
 /// # Errors
 /// [`JourneyError`].
 pub(super) fn found_route(case: &Case, progress: &dyn Progress) -> Result<FoundRoute, JourneyError> {
-    if case.scenario.budget.estimated_success_min.is_some() {
-        along_transect(&case.scenario, "a path with a least success is found")?;
-    }
     let search = FreeSearch::of(case)?;
     let route = search.route(progress)?;
     let case = &search.case;
@@ -214,22 +225,34 @@ pub(super) fn found_route(case: &Case, progress: &dyn Progress) -> Result<FoundR
         let check = checked(&test, &ends, &found);
         return Ok(FoundRoute { test, ends, found, check, path: None, warnings, case: search.case });
     };
-    let Unrolled { case: unrolled, test, legs, ends, path } = search.unrolled(found_path, case.scenario.commands)?;
+    let mut laid = search.laid(found_path, case.scenario.commands)?;
+    let legs = std::mem::take(&mut laid.legs);
+    let (legs, cost) = commanded(&laid.case, &laid.test, (legs, found_path.cost))?;
+    let Unrolled { case: unrolled, test, legs, ends, path } = search.flown(Laid { legs, ..laid })?;
     warnings.extend(path.iter().flat_map(|path| case.scenario.path_warnings(path)));
-    let found = answer(Outcome::Path { legs, cost: found_path.cost });
+    let found = answer(Outcome::Path { legs, cost });
     let check = checked(&test, &ends, &found).with_path(path.as_ref());
-    Ok(FoundRoute { test, ends, found, check, path, warnings, case: unrolled.asked_by(case) })
+    Ok(FoundRoute { test, ends, found, check, path, warnings, case: unrolled })
 }
 
 /// What a free route leaves out of a scenario.
 fn left_out(scenario: &Scenario) -> Vec<String> {
     let mut warnings = Vec::new();
     if scenario.uncertainty.is_some() && scenario.risk != ReliabilityUse::Ignored && !scenario.plans_by_objective() {
-        warnings.push("a free route is searched by hops and effort: the errors of [uncertainty] have no effect on it".to_owned());
+        let commands = if scenario.search.takeoff == TakeoffChoice::MostReliable {
+            "choose the command of each of its hops, and "
+        } else {
+            ""
+        };
+        warnings.push(format!(
+            "a free route is searched by hops and effort: the errors of [uncertainty] {commands}count where a robot replans, but do not \
+             choose the places that the route hops to"
+        ));
     }
     if !scenario.hopper.limits().steps.is_continuous() {
         warnings.push(
-            "a free route has exact commands, and this machine takes its commands in steps, which may miss a landing or break a limit"
+            "a free route and its trials have exact commands, and this machine takes its commands in steps, which may miss a landing or \
+             break a limit"
                 .to_owned(),
         );
     }
@@ -251,12 +274,7 @@ fn planning_ground(case: &Case) -> Result<DemGround, FreeRouteError> {
 /// The lattice as fine as the scenario says, start and goal, and the nodes of the straight slice between them.
 fn nodes(case: &Case, ground: &DemGround, ends: [MapPoint; 2]) -> Result<SurfaceNodes, JourneyError> {
     let (dem, chain) = (ground.terrain().dem(), &case.planning().chain);
-    let post_spacing_m = post_spacing_m(ground);
-    let n = match case.scenario.search.spacing {
-        Some(PointSpacing::AtMostM(spacing_m)) => NodesPerPost::at_most_m(spacing_m, post_spacing_m),
-        Some(PointSpacing::PerSegment(_)) | None => NodesPerPost::auto(level_hop_m(ground), post_spacing_m),
-    };
-    let lattice = SurfaceLattice::new(dem, n);
+    let lattice = SurfaceLattice::new(dem, nodes_per_post(case.scenario.search.spacing, dem, level_hop_m(ground)));
     // Before the slice is filled with as many.
     SurfaceNodes::check(&lattice, 0).map_err(RouteError::from)?;
     let of_slice = NodeSet::of_chain(chain, PointSpacing::AtMostM(lattice.spacing_m())).map_err(SearchError::from)?;
@@ -294,10 +312,10 @@ fn record(nodes: &SurfaceNodes, route: &FreeRoute) -> RouteRecord {
 }
 
 /// The same case over the chain along the places of a route: one slice from each to the next, unrolled.
-fn unrolled(case: &Case, places: &[MapPosition]) -> Result<Case, JourneyError> {
+pub(super) fn unrolled(case: &Case, places: &[MapPosition]) -> Result<Case, CaseError> {
     let (Some(first), Some(last), Some(TerrainSource::Dem { path, .. })) = (places.first(), places.last(), &case.scenario.terrain)
     else {
-        return Err(FreeRouteError::NoDem.into());
+        return Err(CaseError::NoTerrain);
     };
     let metres = |place: &MapPosition| MapPlace::Metres(place.at);
     let scenario = Scenario {
@@ -308,7 +326,7 @@ fn unrolled(case: &Case, places: &[MapPosition]) -> Result<Case, JourneyError> {
         goal_x_m: None,
         ..case.scenario.clone()
     };
-    Ok(Case::new(scenario, Path::new(&case.base), Commands::Exact)?)
+    Case::new(scenario, Path::new(&case.base), Commands::Exact)
 }
 
 /// One leg from each place to the next, along the unrolled chain, with the commands of these choices, or of the one of all hops.
@@ -336,8 +354,12 @@ fn legs(test: &HopTest, places: &[MapPosition], choices: Option<&[TakeoffChoice]
 /// Flies a path again by the independent checker: along its unrolled chain, and over the DEM.
 fn verify(prepared: &Prepared, ground: &DemGround, path: &HopPath, ends: (Station, Station)) -> Result<(), FreeRouteError> {
     Defect::unless_passed(&prepared.execute(path, ends))?;
+    Ok(Defect::unless_passed(&execute_over_dem(ground, path))?)
+}
+
+/// A path flown again by the independent checker over the DEM.
+pub(super) fn execute_over_dem(ground: &DemGround, path: &HopPath) -> Execution {
     let on_map = |point: &ContactPoint| ContactPoint { station: None, ..*point };
     let hops = path.hops.iter().map(|hop| Hop { takeoff: on_map(&hop.takeoff), landing: on_map(&hop.landing), ..*hop });
-    let over_dem = HopPath::of_hops(hops.collect(), ground.hopper());
-    Ok(Defect::unless_passed(&execute(ground, &over_dem, None))?)
+    execute(ground, &HopPath::of_hops(hops.collect(), ground.hopper()), None)
 }

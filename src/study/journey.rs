@@ -17,7 +17,7 @@ use crate::{
     hop::HopTest,
     path::{Hop, HopPath, PathError, TooManyHops},
     progress::Progress,
-    report::{CheckAnswer, DeratingRecord, ObjectiveRecord, SigmaMarginsRecord, SuccessBudgetRecord, SuccessEstimate},
+    report::{CheckAnswer, DeratingRecord, HopRecord, ObjectiveRecord, SigmaMarginsRecord, SuccessBudgetRecord, SuccessEstimate},
     scenario::Scenario,
     uncertainty::HopScatter,
     world::FrictionCone,
@@ -56,6 +56,17 @@ pub(super) struct Estimate {
     pub(super) margins: Vec<SigmaMarginsRecord>,
     /// The success of each hop by itself.
     pub(super) of_hops: Vec<f64>,
+    /// What trials of the path replan by, where it was flown for this estimate.
+    pub(super) to_go: Option<ToGo>,
+}
+
+impl Estimate {
+    /// Adds what is of single hops to their rows.
+    pub(super) fn add_to(&self, rows: &mut [HopRecord]) {
+        for (row, (margins, success)) in rows.iter_mut().zip(self.margins.iter().zip(&self.of_hops)) {
+            (row.margins_sigma, row.success_estimated) = (Some(*margins), Some(*success));
+        }
+    }
 }
 
 /// The result of a search, with bounds if a proof was requested.
@@ -120,7 +131,7 @@ impl Searched {
     }
 
     /// The answer of a search that does not weigh reliability.
-    const fn of(found: graph::Answer) -> Self {
+    pub(super) const fn of(found: graph::Answer) -> Self {
         Self { found, reliable_paths: Vec::new(), success: None, objective: None, warnings: Vec::new(), to_go: None, proof: None }
     }
 
@@ -138,12 +149,13 @@ impl Searched {
         let scenario = &case.scenario;
         let Some(keys) = scenario.uncertainty.as_ref().filter(|keys| !keys.errors.is_none()) else { return Ok(None) };
         let hops = self.found.hops();
-        let known = self.reliable_paths.iter().find(|path| Some(path.cost.hops()) == hops).and_then(|path| path.success);
+        let of_front = self.reliable_paths.iter().find(|path| Some(path.cost.hops()) == hops).and_then(|path| path.success);
+        let known = of_front.or_else(|| self.success.filter(|success| success.hops == hops)?.success_estimated);
         let ground = dem_ground(case).map_err(Box::new)?;
         let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
-        let success_estimated = match known {
-            Some(share) => share,
-            None => journey.success_of(&self.found, path, &keys.options(), progress).map_err(Box::new)?.0,
+        let (success_estimated, to_go) = match known {
+            Some(share) => (share, None),
+            None => journey.success_of(&self.found, path, &keys.options(), progress).map_err(Box::new)?,
         };
         let success = SuccessEstimate { success_estimated, success_policy: keys.policy };
         let simulation = journey.simulation(path, None).map_err(Box::new)?;
@@ -157,6 +169,7 @@ impl Searched {
             success,
             margins: path.hops.iter().zip(&scatters).map(of_hop).collect(),
             of_hops: simulation.hop_successes(keys.policy),
+            to_go,
         }))
     }
 

@@ -1,18 +1,37 @@
 //! How fine the nodes over a DEM are, against what one hop spans.
 
-use crate::ground::{DemGround, Surface};
+use crate::{
+    graph::PointSpacing,
+    ground::{DemGround, Surface},
+    planner::NodesPerPost,
+    terrain::Dem,
+    world::Hopper,
+};
 
 /// The greater distance of neighbouring posts in a row or a column, m.
-pub(super) fn post_spacing_m(ground: &DemGround) -> f64 {
-    let map = ground.terrain().dem().georeference();
+pub(super) fn post_spacing_m(dem: &Dem) -> f64 {
+    let map = dem.georeference();
     map.dx_m().max(map.dy_m())
 }
 
-/// How far one hop goes over level ground at most, by the speeds, m.
+/// How far one hop over this ground goes over a level at most, by the speeds, m.
 pub(super) fn level_hop_m(ground: &DemGround) -> f64 {
-    let limits = ground.hopper().limits();
+    level_hop_of_m(ground.hopper(), ground.gravity_m_s2())
+}
+
+/// How far one hop of a machine goes over level ground at most, by the speeds, m.
+pub(super) fn level_hop_of_m(hopper: &Hopper, gravity_m_s2: f64) -> f64 {
+    let limits = hopper.limits();
     let speed_m_s = limits.takeoff_speed_max_m_s.min(limits.arc_landing_speed_max_m_s());
-    speed_m_s / ground.gravity_m_s2() * speed_m_s
+    speed_m_s / gravity_m_s2 * speed_m_s
+}
+
+/// As many nodes a post spacing as the scenario says; by itself, as a hop of this length over level ground needs.
+pub(super) fn nodes_per_post(spacing: Option<PointSpacing>, dem: &Dem, level_hop_m: f64) -> NodesPerPost {
+    match spacing {
+        Some(PointSpacing::AtMostM(spacing_m)) => NodesPerPost::at_most_m(spacing_m, post_spacing_m(dem)),
+        Some(PointSpacing::PerSegment(_)) | None => NodesPerPost::auto(level_hop_m, post_spacing_m(dem)),
+    }
 }
 
 /// A warning where one hop spans few nodes.

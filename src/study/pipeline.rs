@@ -494,7 +494,9 @@ pub(super) fn planned_over(ground: &DemGround, scenario: &Scenario) -> DemGround
     let Some(derated) = scenario.derated() else { return ground.clone() };
     let overlays = ground.terrain().overlays().with_friction_share(scenario.derating.friction);
     let terrain = OverlaidDem::new(ground.terrain().shared_dem(), overlays);
-    DemGround::new(terrain, &derated.hopper, derated.body.gravity, &derated.surface)
+    // As the ground itself: over a free route any command.
+    let hopper = if scenario.route == Route::Free { derated.hopper.with_any_command() } else { derated.hopper };
+    DemGround::new(terrain, &hopper, derated.body.gravity, &derated.surface)
 }
 
 /// The friction of a scenario for the whole ground.

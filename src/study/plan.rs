@@ -6,7 +6,8 @@ use super::{
     Case, CaseError, Commands, Front, FrontProblem, JourneyError, Proof, SimulateError,
     dem_ground::dem_ground,
     free_front::free_front,
-    free_route::{FoundRoute, along_transect, found_route},
+    free_route::{FoundRoute, along_transect},
+    free_trials::route_with_success,
     front::{amount_front, front},
     journey::Searched,
     to_go::ToGo,
@@ -144,9 +145,8 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
     let flown = path.as_ref().filter(|_| options.estimate);
     let estimate = flown.map(|path| searched.success_estimate(&test, ends, &case, path, progress)).transpose()?.flatten();
     let mut hops = path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default();
-    let of_hops = estimate.iter().flat_map(|estimate| estimate.margins.iter().zip(&estimate.of_hops));
-    for (hop, (margins, success)) in hops.iter_mut().zip(of_hops) {
-        (hop.margins_sigma, hop.success_estimated) = (Some(*margins), Some(*success));
+    if let Some(estimate) = &estimate {
+        estimate.add_to(&mut hops);
     }
     let estimate = estimate.map(|estimate| estimate.success);
     let mut front_search = None;
@@ -191,19 +191,29 @@ fn plan_free(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resu
         }
     }
     let asked = case;
-    let FoundRoute { case, test, ends, found, check, path, warnings } = found_route(asked, progress)?;
+    let (route, mut searched) = route_with_success(asked, progress)?;
+    let FoundRoute { case, test, ends, found, check, path, warnings } = route;
     let front = options.front.map(|front| free_front(asked, path.as_ref(), front.amount(), progress)).transpose()?;
     let (front, front_search) = front.unzip();
+    let flown = path.as_ref().filter(|_| options.estimate);
+    let estimate = flown.map(|path| searched.success_estimate(&test, ends, &case, path, progress)).transpose()?.flatten();
+    let mut hops = path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default();
+    let mut totals = path.as_ref().map(|path| TotalsRecord::from(&path.totals));
+    if let Some((estimate, totals)) = estimate.zip(totals.as_mut()) {
+        estimate.add_to(&mut hops);
+        totals.estimate = Some(estimate.success);
+        searched.to_go = searched.to_go.or(estimate.to_go);
+    }
     let answer = PlanAnswer {
         check,
         verified: path.is_some().then_some(true),
-        path: path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default(),
-        totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
+        path: hops,
+        totals,
         reliable_paths: Vec::new(),
         front,
         front_search,
     };
-    Ok(Planned { case, test, ends, found, path, answer, warnings, to_go: None })
+    Ok(Planned { case, test, ends, found, path, answer, warnings, to_go: searched.to_go })
 }
 
 impl Planned {
@@ -242,7 +252,7 @@ impl Planned {
     pub fn picture(&self) -> Result<Picture, FigureError> {
         let scenario = &self.case.scenario;
         // The search of a free route has read the raster.
-        let ground = self.answer.check.route.and_then(|_| self.dem_ground().ok().flatten());
+        let ground = self.answer.check.route.as_ref().and_then(|_| self.dem_ground().ok().flatten());
         draw(&FigureInput {
             test: &self.test,
             answer: &self.found,
@@ -265,7 +275,7 @@ impl Planned {
         let geometry = self.case.prepared.chain.geometry();
         let start = geometry.map_point(&self.ends.0)?;
         let landings = self.path.iter().flat_map(|path| &path.hops).filter_map(|hop| hop.landing.map());
-        let [x_m, y_m, _] = self.answer.check.route?.nearest_m;
+        let [x_m, y_m, _] = self.answer.check.route.as_ref()?.nearest_m;
         Some(PlanView {
             dem: ground.terrain().dem(),
             start,

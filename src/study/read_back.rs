@@ -3,7 +3,11 @@
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use super::{Case, CaseError, Commands, Planned, free_route::along_transect};
+use super::{
+    Case, CaseError, Commands, Planned, SimulateError,
+    free_read_back::{over_dem, unrolled_along},
+    free_route::execute_over_dem,
+};
 use crate::{
     chain::OffChain,
     graph::{Answer, Cost, Outcome, PointSpacing, RefusalCounts},
@@ -12,6 +16,7 @@ use crate::{
     path::{Aim, Hop, HopPath, RollOut, Violation},
     quantity::{Angle, AngleInterval, MapPoint},
     report::{CheckAnswer, DocumentKind, HopRecord, InputFile, PlanAnswer, TotalsRecord},
+    scenario::Route,
     world::Direction,
 };
 
@@ -68,6 +73,28 @@ pub enum ReadBackError {
         /// The problem.
         problem: OffChain,
     },
+    /// A hop of a free route without its places on the map.
+    #[error(
+        "hop {hop} of the result has no places on the map, expected them for terrain.route = \"free\": give the JSON that chta wrote"
+    )]
+    NoPlaces {
+        /// The number of the hop, from 1.
+        hop: usize,
+    },
+    /// A free route between other places than those that the scenario asks for.
+    #[error(
+        "the path of the result goes from ({}, {}) m to ({}, {}) m, but the scenario asks for ({}, {}) m to ({}, {}) m",
+        found[0].x, found[0].y, found[1].x, found[1].y, asked[0].x, asked[0].y, asked[1].x, asked[1].y
+    )]
+    OtherEnds {
+        /// Those of the result.
+        found: [MapPoint; 2],
+        /// Those of the scenario.
+        asked: [MapPoint; 2],
+    },
+    /// The raster that it is flown over.
+    #[error(transparent)]
+    Dem(Box<SimulateError>),
     /// A path that does not hold under the scenario as it is now.
     #[error(
         "the path of the result does not hold under this scenario ({} violations): {}",
@@ -90,7 +117,6 @@ impl Planned {
     /// # Errors
     /// [`ReadBackError`].
     pub fn read_back(case: &Case, document: &Value, inputs: &[InputFile]) -> Result<Self, ReadBackError> {
-        along_transect(&case.scenario, "the path of a result is read back")?;
         let schema = document["schema"].as_str().unwrap_or("no schema");
         let has_path = DocumentKind::of_schema(schema).is_some_and(|kind| WITH_PATH.contains(&kind));
         if !has_path || document.get("path").is_none() {
@@ -99,7 +125,10 @@ impl Planned {
         same_inputs(&key::<Vec<InputFile>>(document, "inputs")?, inputs)?;
         let rows: Vec<HopRecord> = key(document, "path")?;
         let check = CheckAnswer::deserialized(document)?;
-        let case = case.with_commands(Commands::OfTheMachine)?;
+        let case = match case.scenario.route {
+            Route::Transect => case.with_commands(Commands::OfTheMachine)?,
+            Route::Free => unrolled_along(case, &rows)?,
+        };
         let (test, ends) = (case.hop_test(), case.ends()?);
         let flies = check.is_traversable() || !rows.is_empty();
         if let Some(stated) = check.hops.filter(|stated| flies && *stated != rows.len() as u64) {
@@ -107,15 +136,23 @@ impl Planned {
         }
         let path = flies.then(|| path_of(&test, &rows)).transpose()?;
         if let Some(path) = &path {
-            let execution = case.prepared.execute(path, ends);
+            let mut execution = case.prepared.execute(path, ends);
+            if let Some(ground) = over_dem(&case)? {
+                execution.violations.extend(execute_over_dem(&ground, path).violations);
+            }
             if !execution.passes() {
                 return Err(ReadBackError::Breaks { violations: execution.violations });
             }
         }
-        let spacing = check.node_spacing_max_m.map_or(PointSpacing::PerSegment(check.points_per_segment), PointSpacing::AtMostM);
+        let stated = check.node_spacing_max_m.map_or(PointSpacing::PerSegment(check.points_per_segment), PointSpacing::AtMostM);
+        let spacing = match case.scenario.route {
+            Route::Transect => case.scenario.search.spacing.unwrap_or(stated),
+            // That of the lattice, which divides the post spacing.
+            Route::Free => stated,
+        };
         let found = Answer {
             outcome: Outcome::Path { legs: Vec::new(), cost: Cost::of_hops(rows.len() as u64) },
-            spacing: case.scenario.search.spacing.unwrap_or(spacing),
+            spacing,
             points_per_segment: check.points_per_segment,
             nodes: check.nodes,
             pairs_tested: check.pairs_tested,

@@ -1,10 +1,8 @@
 //! The least capability with which the goal can be reached.
 
 use super::{
-    Case, CaseError, Commands, JourneyError, Variation, ask_the_same,
-    journey::{self, Searched},
-    require_success::SuccessSearch,
-    value_scan::ValueScan,
+    Case, CaseError, Commands, JourneyError, Variation, ask_the_same, free_nodes::QuestionNodes, journey_path::JourneyPath,
+    require_free::require_free, require_success::SuccessSearch, value_scan::ValueScan,
 };
 use crate::{
     chain::Station,
@@ -16,10 +14,10 @@ use crate::{
     progress::{Cancelled, Progress},
     quantity::Angle,
     report::{
-        BudgetsTry, DeratingRecord, GapRecord, HopRecord, ObjectiveRecord, RequireAnswer, RequireBudgetsRecord, RequireTry,
-        SuccessBudgetRecord, TotalsRecord,
+        BudgetsTry, DeratingRecord, GapRecord, HopRecord, ObjectiveRecord, QuestionRouteRecord, RequireAnswer,
+        RequireBudgetsRecord, RequireTry, TotalsRecord,
     },
-    scenario::{Entries, Key, Kind, Scenario, ScenarioProblem},
+    scenario::{Entries, Key, Kind, Route, Scenario, ScenarioProblem},
 };
 
 /// The key of the height to keep over the ground.
@@ -233,11 +231,47 @@ impl Requirement {
         entries
     }
 
-    /// The case at a value.
-    fn at(&self, variation: &Variation, value: f64) -> Result<Case, RequireError> {
+    /// The scenario at a value.
+    fn scenario(&self, variation: &Variation, value: f64) -> Result<Scenario, RequireError> {
         let scenario = Scenario::new(self.with_value(&variation.entries, value));
-        let scenario = scenario.map_err(|problems| RequireError::Scenario { problems })?;
-        Ok(Case::over(&variation.survey, scenario, variation.base(), Commands::Exact)?)
+        scenario.map_err(|problems| RequireError::Scenario { problems })
+    }
+}
+
+/// A requirement on a scenario over its terrain.
+pub(super) struct Question<'q> {
+    pub(super) variation: &'q Variation,
+    requirement: &'q Requirement,
+    /// The nodes of free routes.
+    nodes: Option<QuestionNodes>,
+}
+
+impl Question<'_> {
+    /// The case at a value.
+    pub(super) fn at(&self, value: f64) -> Result<Case, RequireError> {
+        let scenario = self.requirement.scenario(self.variation, value)?;
+        let scenario = match &self.nodes {
+            Some(nodes) => nodes.of(scenario),
+            None => scenario,
+        };
+        Ok(Case::over(&self.variation.survey, scenario, self.variation.base(), Commands::Exact)?)
+    }
+
+    /// The key.
+    pub(super) const fn key(&self) -> &'static str {
+        self.requirement.capability.path
+    }
+
+    /// The nodes of free routes as plain data.
+    pub(super) fn route_record(&self) -> Option<QuestionRouteRecord> {
+        self.nodes.map(|nodes| nodes.record)
+    }
+
+    /// An answer that shows the case of a value.
+    pub(super) fn required(&self, shown: Case, value: f64, answer: RequireAnswer) -> Required {
+        let Self { variation, requirement, .. } = self;
+        let shown_entries = requirement.with_value(&variation.entries, value);
+        Required { shown, shown_entries, answer, warnings: variation.first.prepared.warnings.clone() }
     }
 }
 
@@ -321,19 +355,25 @@ pub fn require(variation: &Variation, requirement: &Requirement, progress: &dyn 
         return Err(RequireError::NoSuccessWanted { key: capability.path });
     }
     capability.check(first)?;
-    let last = requirement.at(variation, weakest)?;
+    let scenarios = [weakest, strongest].map(|value| requirement.scenario(variation, value));
+    let scenarios = scenarios.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let question = &Question { variation, requirement, nodes: QuestionNodes::resolved(first, scenarios)? };
+    let last = question.at(weakest)?;
     if ask_the_same((&first.scenario, &first.prepared), (&last.scenario, &last.prepared)) {
         return Err(RequireError::NoEffect { key: capability.path, from, to });
     }
     if let Some(wanted) = wanted {
-        return require_success(variation, requirement, (range, wanted), progress);
+        return require_success(question, (range, wanted), progress);
     }
     if first.scenario.plans_by_objective() {
-        return require_budgets(variation, requirement, range, progress);
+        return require_budgets(question, range, progress);
+    }
+    if first.scenario.route == Route::Free {
+        return require_free(question, range, progress);
     }
     let mut tries: Vec<Tried> = Vec::new();
     let mut verdict_at = |value| {
-        let tried = Tried::new(requirement.at(variation, value)?, value, requirement, ends, progress)?;
+        let tried = Tried::new(question.at(value)?, value, requirement, ends, progress)?;
         let verdict = tried.bounds.verdict();
         tries.push(tried);
         Ok::<ProofVerdict, RequireError>(verdict)
@@ -346,6 +386,8 @@ pub fn require(variation: &Variation, requirement: &Requirement, progress: &dyn 
         vary: capability.path.to_owned(),
         unreachable_at: threshold.unreachable_at,
         reachable_at: threshold.reachable_at,
+        not_reached_at: None,
+        route: None,
         from,
         to,
         resolution: *resolution,
@@ -366,36 +408,31 @@ pub fn require(variation: &Variation, requirement: &Requirement, progress: &dyn 
     }
     // The scenario gets the value that the path needs, so that a plan for it flies that path.
     let shown_value = reached.map_or(strongest, |tried| tried.value);
-    Ok(Required {
-        shown: reached.map_or(first, |tried| &tried.case).clone(),
-        shown_entries: requirement.with_value(&variation.entries, shown_value),
-        answer,
-        warnings: first.prepared.warnings.clone(),
-    })
+    Ok(question.required(reached.map_or(first, |tried| &tried.case).clone(), shown_value, answer))
 }
 
 /// The least capable value whose estimated success is enough.
 fn require_success(
-    variation: &Variation,
-    requirement: &Requirement,
+    question: &Question<'_>,
     (range, wanted): (CapabilityRange, f64),
     progress: &dyn Progress,
 ) -> Result<Required, RequireError> {
-    let Requirement { capability, resolution, .. } = requirement;
-    let first = &variation.first;
+    let first = &question.variation.first;
     let ends = first.ends()?;
     let mut search = SuccessSearch::new(range, wanted);
-    search.run(&mut |value| estimated(&requirement.at(variation, value)?, ends, progress), progress)?;
+    search.run(&mut |value| Ok::<_, RequireError>(JourneyPath::of(&question.at(value)?, progress)?.success()), progress)?;
     let reached = search.least();
     let mut answer = RequireAnswer {
         start_x_m: ends.0.point.x_m,
         goal_x_m: ends.1.point.x_m,
-        vary: capability.path.to_owned(),
+        vary: question.key().to_owned(),
         unreachable_at: None,
         reachable_at: reached.map(|tried| tried.value),
+        not_reached_at: None,
+        route: question.route_record(),
         from: range.weakest.min(range.strongest),
         to: range.weakest.max(range.strongest),
-        resolution: *resolution,
+        resolution: range.resolution,
         resolution_met: search.is_met(),
         never_binds: false,
         tries: Vec::new(),
@@ -408,89 +445,56 @@ fn require_success(
         gap: None,
     };
     let value = answer.reachable_at.unwrap_or(range.strongest);
-    let shown = requirement.at(variation, value)?;
-    if answer.reachable_at.is_some() {
-        let (test, options) = (shown.hop_test(), &shown.scenario.search);
-        if let Outcome::Path { legs, .. } = journey::search(&test, ends, &shown, progress)?.found.outcome
-            && let Ok(path) = generate(&test, &legs, options.takeoff, options.split)
-        {
-            answer.path = HopRecord::rows(&path, shown.prepared.projection.as_ref());
-            answer.totals = Some(TotalsRecord::from(&path.totals));
-        }
+    let shown = question.at(value)?;
+    if answer.reachable_at.is_some()
+        && let Some(path) = JourneyPath::of(&shown, progress)?.path(&shown)
+    {
+        answer.path = HopRecord::rows(&path, shown.prepared.projection.as_ref());
+        answer.totals = Some(TotalsRecord::from(&path.totals));
     }
-    Ok(Required {
-        shown,
-        shown_entries: requirement.with_value(&variation.entries, value),
-        answer,
-        warnings: first.prepared.warnings.clone(),
-    })
+    Ok(question.required(shown, value, answer))
 }
 
 /// The least capable value with a path within the budgets.
-fn require_budgets(
-    variation: &Variation,
-    requirement: &Requirement,
-    range: CapabilityRange,
-    progress: &dyn Progress,
-) -> Result<Required, RequireError> {
-    let Requirement { capability, resolution, .. } = requirement;
-    let first = &variation.first;
+fn require_budgets(question: &Question<'_>, range: CapabilityRange, progress: &dyn Progress) -> Result<Required, RequireError> {
+    let first = &question.variation.first;
     let ends = first.ends()?;
-    let mut scan: ValueScan<Searched> = ValueScan::new(range);
-    let mut attempt = |value: f64| {
-        let case = requirement.at(variation, value)?;
-        Ok::<_, RequireError>(journey::search(&case.hop_test(), ends, &case, progress)?)
-    };
-    let within =
-        |searched: &Searched| searched.found.hops().is_some() && searched.objective.as_ref().is_none_or(ObjectiveRecord::is_met);
+    let mut scan: ValueScan<JourneyPath> = ValueScan::new(range);
+    let mut attempt = |value: f64| Ok::<_, RequireError>(JourneyPath::of(&question.at(value)?, progress)?);
+    let within = |tried: &JourneyPath| tried.hops().is_some() && tried.objective().is_none_or(ObjectiveRecord::is_met);
     scan.run(&mut attempt, &[(&within, 1.0)], progress)?;
     let reached = scan.first(&within).and_then(|at| scan.tries.get(at));
     let value = reached.map_or(range.strongest, |(value, _)| *value);
-    let shown = requirement.at(variation, value)?;
-    let (mut path, mut totals) = (Vec::new(), None);
-    let options = &shown.scenario.search;
-    if let Some(Outcome::Path { legs, .. }) = reached.map(|(_, searched)| &searched.found.outcome)
-        && let Ok(flown) = generate(&shown.hop_test(), legs, options.takeoff, options.split)
-    {
-        path = HopRecord::rows(&flown, shown.prepared.projection.as_ref());
-        totals = Some(TotalsRecord::from(&flown.totals));
-    }
+    let shown = question.at(value)?;
+    let flown = reached.and_then(|(_, tried)| tried.path(&shown));
     let record = RequireBudgetsRecord {
-        at: reached.and_then(|(_, searched)| searched.objective.clone()),
+        at: reached.and_then(|(_, tried)| tried.objective().cloned()),
         within_from_there_on: scan.tries.is_sorted_by(|(_, a), (_, b)| within(a) <= within(b)),
-        tries: scan
-            .tries
-            .iter()
-            .map(|(value, searched)| BudgetsTry::new(*value, searched.found.hops(), searched.objective.as_ref()))
-            .collect(),
+        tries: scan.tries.iter().map(|(value, tried)| BudgetsTry::new(*value, tried.hops(), tried.objective())).collect(),
     };
     let answer = RequireAnswer {
         start_x_m: ends.0.point.x_m,
         goal_x_m: ends.1.point.x_m,
-        vary: capability.path.to_owned(),
+        vary: question.key().to_owned(),
         unreachable_at: None,
         reachable_at: reached.map(|(value, _)| *value),
+        not_reached_at: None,
+        route: question.route_record(),
         from: range.weakest.min(range.strongest),
         to: range.weakest.max(range.strongest),
-        resolution: *resolution,
+        resolution: range.resolution,
         resolution_met: scan.is_met(&within),
         never_binds: false,
         tries: Vec::new(),
-        hops: reached.and_then(|(_, searched)| searched.found.hops()),
-        path,
-        totals,
+        hops: reached.and_then(|(_, tried)| tried.hops()),
+        path: flown.as_ref().map(|path| HopRecord::rows(path, shown.prepared.projection.as_ref())).unwrap_or_default(),
+        totals: flown.as_ref().map(|path| TotalsRecord::from(&path.totals)),
         success: None,
         within_budgets: Some(record),
         derating: DeratingRecord::of(&first.scenario.derating),
         gap: None,
     };
-    let shown_entries = requirement.with_value(&variation.entries, value);
-    Ok(Required { shown, shown_entries, answer, warnings: first.prepared.warnings.clone() })
-}
-
-/// The hops and the estimated success of a case's path; `None` without a path.
-fn estimated(case: &Case, ends: (Station, Station), progress: &dyn Progress) -> Result<Option<SuccessBudgetRecord>, RequireError> {
-    Ok(journey::search(&case.hop_test(), ends, case, progress)?.success)
+    Ok(question.required(shown, value, answer))
 }
 
 /// The chain at one value, with its bounds.

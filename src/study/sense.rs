@@ -2,7 +2,7 @@
 
 use super::{Extremes, Prepared, constant_gravity_warnings};
 use crate::{
-    chain::GroundForm,
+    chain::{GroundForm, PolygonalChain, Station},
     graph::ReliabilityUse,
     path::{Hop, HopPath},
     quantity::format_number,
@@ -37,10 +37,16 @@ impl TrialGround {
         Self {
             friction_max: frictions.map(FrictionCone::coefficient).reduce(f64::max),
             extent_m: last_m - first_m,
-            journey_m: prepared.start.zip(prepared.goal).map(|(start, goal)| (goal.point.x_m - start.point.x_m).abs()),
+            journey_m: prepared.start.zip(prepared.goal).map(|(start, goal)| straight_m(geometry, [start, goal])),
             hops,
         }
     }
+}
+
+/// The straight distance of two stations, m: of a chain with bends that of their places on the map.
+fn straight_m(geometry: &PolygonalChain, ends: [Station; 2]) -> f64 {
+    let [start, goal] = ends.map(|end| geometry.map_point(&end).filter(|_| !geometry.bends().is_empty()));
+    start.zip(goal).map_or_else(|| (ends[1].point.x_m - ends[0].point.x_m).abs(), |(start, goal)| (goal - start).norm())
 }
 
 /// A warning where the hops of a path, flown exactly, bounce on beyond their planned landings: a plan is a plan of first contacts.

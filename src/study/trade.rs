@@ -4,7 +4,10 @@ use std::{collections::BTreeMap, ops::ControlFlow, path::Path};
 
 use rayon::prelude::*;
 
-use super::{Case, CaseError, Commands, JourneyError, PipelineError, Survey, ask_the_same, journey, physics::escape_warnings};
+use super::{
+    Case, CaseError, Commands, JourneyError, PipelineError, Survey, ask_the_same, free_nodes::QuestionNodes, journey,
+    physics::escape_warnings, trade_free::free_row,
+};
 use crate::{
     chain::Station,
     graph::{
@@ -16,7 +19,7 @@ use crate::{
     path::HopPath,
     progress::{Cancelled, Detail, Meter, Progress, Stage, Step},
     report::{EffortRecord, MarginsRecord, ObjectiveRecord, SweptKeyRecord, TotalsRecord, TradeAnswer, TradeRow},
-    scenario::{Entries, Key, Kind, Scenario, ScenarioProblem, fits, nearest_key},
+    scenario::{Entries, Key, Kind, Route, Scenario, ScenarioProblem, fits, nearest_key},
 };
 
 /// A swept key of the scenario, and its values.
@@ -113,6 +116,9 @@ pub enum TradeError {
         /// The greatest value.
         to: f64,
     },
+    /// A proof over free routes.
+    #[error(transparent)]
+    Case(#[from] CaseError),
     /// It was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -347,9 +353,10 @@ impl<'a> Trade<'a> {
             self.check_effect(axis, &meter)?;
         }
         self.read_ahead();
+        let nodes = self.question_nodes();
         let row = |cell| -> Result<Result<TradeRow, CellError>, Cancelled> {
             meter.check()?;
-            let row = match self.row(&self.at(cell), proof_budget_cells, &meter) {
+            let row = match self.row(&self.at(cell), (proof_budget_cells, nodes.as_ref()), &meter) {
                 Err(CellError::Search(SearchError::Cancelled(cancelled))) => return Err(cancelled),
                 row => row,
             };
@@ -367,7 +374,7 @@ impl<'a> Trade<'a> {
             }));
         }
         let vary = self.swept.iter().map(|v| SweptKeyRecord { key: v.key.path(), values: v.values.clone() }).collect();
-        Ok(TradedCells { answer: TradeAnswer { vary, rows }, failed })
+        Ok(TradedCells { answer: TradeAnswer { vary, route: nodes.map(|nodes| nodes.record), rows }, failed })
     }
 
     /// Reads the whole raster where trials over it estimate a success, so that the cells, which are answered side by side, find it read. What is
@@ -382,6 +389,17 @@ impl<'a> Trade<'a> {
         if let Some((sliced, _)) = first.filter(flies).and_then(|_| self.survey.sliced()) {
             let _ = sliced.whole();
         }
+    }
+
+    /// The nodes of free routes, the same for all cells; `None` along a transect, and where their spacing is varied.
+    fn question_nodes(&self) -> Option<QuestionNodes> {
+        if self.swept.iter().any(|v| v.key.table == "search" && matches!(v.key.name, "node_spacing_max_m" | "points_per_segment")) {
+            return None;
+        }
+        // Without a case that can be prepared, every cell says why.
+        let first = (0..self.cells()).find_map(|cell| self.case(&self.at(cell)).ok())?;
+        let scenarios = (0..self.cells()).filter_map(|cell| self.scenario(&self.at(cell)).ok());
+        QuestionNodes::resolved(&first, scenarios).ok().flatten()
     }
 
     /// The values of a cell by their keys.
@@ -410,8 +428,19 @@ impl<'a> Trade<'a> {
     }
 
     /// One cell.
-    fn row(&self, values: &[f64], proof_budget_cells: Option<usize>, meter: &Meter<'_>) -> Result<TradeRow, CellError> {
-        let case = self.case(values)?;
+    fn row(
+        &self,
+        values: &[f64],
+        (proof_budget_cells, nodes): (Option<usize>, Option<&QuestionNodes>),
+        meter: &Meter<'_>,
+    ) -> Result<TradeRow, CellError> {
+        let mut case = self.case(values)?;
+        if case.scenario.route == Route::Free {
+            if let Some(nodes) = nodes {
+                case.scenario = nodes.of(case.scenario);
+            }
+            return free_row(&case, self.named(values), &Unreported(meter));
+        }
         let Case { scenario, prepared, .. } = &case;
         let ends = prepared.start.zip(prepared.goal).ok_or(CellError::NoEnds)?;
         let above_escape = !escape_warnings(scenario, Some(prepared.chain.geometry())).is_empty();

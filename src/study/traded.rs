@@ -1,6 +1,6 @@
 //! The answer of a trade with its picture.
 
-use super::{Case, CellError, Proof, SweptKey, Trade, TradeError, TradedCells, Variation};
+use super::{Case, CellError, Proof, SweptKey, Trade, TradeError, TradedCells, Variation, free_route::along_transect};
 #[cfg(feature = "plot")]
 use crate::figure::{FigureError, Picture, TradeFigure, draw_trade};
 use crate::{
@@ -42,6 +42,9 @@ pub fn trade(
     proof: Option<Proof>,
     progress: &dyn Progress,
 ) -> Result<Traded, TradeError> {
+    if proof.is_some() {
+        along_transect(&variation.first.scenario, "bounds that hold at any resolution are proved")?;
+    }
     let trade = Trade::new(&variation.entries, variation.base(), &variation.survey, swept)?;
     let TradedCells { answer, failed } = trade.run(proof.map(|proof| proof.budget_cells), progress)?;
     let first = variation.first.clone();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Case, CaseError, Commands, Survey, free_route::along_transect};
+use super::{Case, CaseError, Commands, Survey};
 use crate::scenario::{Entries, Scenario};
 
 /// A scenario of which keys are varied. Its cases are for exact commands.
@@ -22,7 +22,6 @@ impl Variation {
     /// # Errors
     /// [`CaseError::NoTerrain`] and [`CaseError::Prepare`].
     pub fn new(entries: Entries, first: Scenario, base: &Path) -> Result<Self, CaseError> {
-        along_transect(&first, "values of a key are compared")?;
         let survey = surveyed(&first, base)?;
         let first = Case::over(&survey, first, base, Commands::Exact)?;
         Ok(Self { entries, first, survey })

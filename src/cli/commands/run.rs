@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use chta::{
     report::{DocumentKind, plan_text},
-    scenario::Route,
     study::{PlanOptions, SimulateOptions, Trials, plan},
 };
 
@@ -41,8 +40,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     folder.trajectory(in_time, &planned)?;
     folder.plan(&planned, &loaded)?;
     let mut trials_text = String::new();
-    let is_flown = loaded.case.scenario.uncertainty.is_some() && loaded.case.scenario.route == Route::Transect;
-    if is_flown && planned.path.is_some() {
+    if loaded.case.scenario.uncertainty.is_some() && planned.path.is_some() {
         let trials = Trials::new(&planned, &SimulateOptions::default());
         output::warn_all(args.quiet, trials.warnings());
         let simulated = Listener::fly(trials, None, &Progress::new(args.quiet))?;

@@ -126,7 +126,7 @@ impl PreparedMap {
 impl MapQuestion<'_> {
     /// The nodes of the map: every `stride`-th post, or the lattice as fine as the spacing of nodes asks; without one the posts.
     fn lattice(&self, ground: &DemGround) -> Result<NodeLattice, MapStudyError> {
-        let (dem, post_spacing_m) = (ground.terrain().dem(), post_spacing_m(ground));
+        let (dem, post_spacing_m) = (ground.terrain().dem(), post_spacing_m(ground.terrain().dem()));
         let n = match self.scenario.search.spacing {
             _ if self.auto_nodes => NodesPerPost::auto(level_hop_m(ground), post_spacing_m),
             Some(PointSpacing::AtMostM(spacing_m)) => NodesPerPost::at_most_m(spacing_m, post_spacing_m),

@@ -7,6 +7,7 @@ use crate::{
     planner::Amount,
     quantity::format_number,
     report::AdviceRecord,
+    scenario::Route,
     study::Planned,
     uncertainty::{ErrorKey, Policy, Summary, TrialOptions, TrialOutcome},
 };
@@ -90,8 +91,15 @@ impl Advisor<'_> {
         }
         let risk = scenario.risk;
         (risk != ReliabilityUse::Traded).then(|| {
-            let reason =
-                "more hops, each farther from its limits; without search.takeoff_angle the angles are then the most reliable";
+            let reason = match scenario.route {
+                Route::Transect => {
+                    "more hops, each farther from its limits; without search.takeoff_angle the angles are then the most reliable"
+                }
+                // Its search does not weigh reliability.
+                Route::Free => {
+                    "a robot that replans then weighs reliability; without search.takeoff_angle the angles are the most reliable"
+                }
+            };
             record("search.risk", format!("\"{}\"", risk.name()), Some("\"traded\""), reason)
         })
     }

@@ -5,7 +5,7 @@ use crate::{
     ground::DemGround,
     path::HopPath,
     progress::Progress,
-    study::{Planned, dem_ground::dem_ground, free_route::along_transect, front::FlownJourney, to_go::ToGo},
+    study::{Planned, dem_ground::dem_ground, front::FlownJourney, to_go::ToGo},
     uncertainty::{Policy, Simulation, Uncertainty},
 };
 
@@ -20,7 +20,6 @@ pub(in crate::study) struct Flyer<'a> {
 impl<'a> Flyer<'a> {
     /// Takes raster and replanning policy from the plan, as far as it has them.
     pub(in crate::study) fn new(planned: &'a Planned, policies: &[Policy], progress: &dyn Progress) -> Result<Self, SimulateError> {
-        along_transect(&planned.case.scenario, "trials are flown")?;
         let mut flyer = Self { planned, ground: dem_ground(&planned.case)?, to_go: None };
         let replans = policies.contains(&Policy::Replan);
         flyer.to_go = match (&planned.to_go, &planned.path) {

@@ -1,0 +1,77 @@
+//! The least capability with which free routes reach a goal over nodes that are the same for every value.
+
+use super::{Case, RequireError, Required, journey_path::JourneyPath, require::Question};
+use crate::{
+    graph::proof::{CapabilityRange, ProofVerdict, least_capability},
+    progress::Progress,
+    report::{DeratingRecord, HopRecord, RequireAnswer, RequireTry, TotalsRecord},
+};
+
+/// A free route at one value.
+struct Tried {
+    value: f64,
+    case: Case,
+    route: JourneyPath,
+}
+
+impl Tried {
+    fn record(&self) -> RequireTry {
+        let check = self.route.free_check();
+        RequireTry {
+            value: self.value,
+            verdict: check.map_or(ProofVerdict::Open, |check| check.verdict),
+            lower_bound: check.and_then(|check| check.hops_lower_bound),
+            upper_bound: self.route.hops(),
+        }
+    }
+}
+
+/// Bisects: over the same nodes a more capable value never takes a hop away, so that the goal is reached from one value on.
+///
+/// # Errors
+/// [`RequireError`].
+pub(super) fn require_free(
+    question: &Question<'_>,
+    range: CapabilityRange,
+    progress: &dyn Progress,
+) -> Result<Required, RequireError> {
+    let mut tries: Vec<Tried> = Vec::new();
+    let mut reached_at = |value| {
+        let case = question.at(value)?;
+        let route = JourneyPath::of(&case, progress)?;
+        // Not reached over these nodes is not unreachable: the name of the verdict is that of the bisection.
+        let verdict = if route.hops().is_some() { ProofVerdict::Traversable } else { ProofVerdict::Untraversable };
+        tries.push(Tried { value, case, route });
+        Ok::<ProofVerdict, RequireError>(verdict)
+    };
+    let threshold = least_capability(range, &mut reached_at, progress)?;
+    let first = &question.variation.first;
+    let ends = first.ends()?;
+    let reached = tries.iter().find(|tried| Some(tried.value) == threshold.reachable_at);
+    let path = reached.and_then(|tried| tried.route.path(&tried.case));
+    let projection = first.prepared.projection.as_ref();
+    let answer = RequireAnswer {
+        start_x_m: ends.0.point.x_m,
+        goal_x_m: ends.1.point.x_m,
+        vary: question.key().to_owned(),
+        unreachable_at: None,
+        reachable_at: threshold.reachable_at,
+        not_reached_at: threshold.unreachable_at,
+        route: question.route_record(),
+        from: range.weakest.min(range.strongest),
+        to: range.weakest.max(range.strongest),
+        resolution: range.resolution,
+        resolution_met: range.is_met(&threshold),
+        never_binds: false,
+        tries: tries.iter().map(Tried::record).collect(),
+        hops: reached.and_then(|tried| tried.route.hops()),
+        path: path.as_ref().map(|path| HopRecord::rows(path, projection)).unwrap_or_default(),
+        totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
+        success: None,
+        within_budgets: None,
+        derating: DeratingRecord::of(&first.scenario.derating),
+        gap: None,
+    };
+    let value = reached.map_or(range.strongest, |tried| tried.value);
+    Ok(question.required(question.at(value)?, value, answer))
+}
