@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    ContactRule, Footing, Footprint, FootprintRefusal, GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints,
-    SegmentGround, Station, rest_slope, touchdown::touchdown_rule,
+    ContactRule, Footing, Footprint, FootprintRefusal, GroundForm, GroundRefusal, LineConstraints, PolygonalChain,
+    SegmentConstraints, SegmentGround, Station, rest_slope, touchdown::touchdown_rule,
 };
 use crate::{
     ballistics::PathBounds,
@@ -219,12 +219,7 @@ impl ConstrainedChain {
     ///
     /// # Errors
     /// The refusal by the ground.
-    pub fn check_contact(
-        &self,
-        station: &Station,
-        contact: Contact,
-        direction: Direction,
-    ) -> Result<ContactRule, GroundRefusal> {
+    pub fn check_contact(&self, station: &Station, contact: Contact, direction: Direction) -> Result<ContactRule, GroundRefusal> {
         let id = station.ruling_segment(contact, direction, self.segments.len()).ok_or(GroundRefusal::NoGround)?;
         let checked = self.segments.get(id.index()).ok_or(GroundRefusal::NoGround)?.check_contact(contact, direction);
         match checked {

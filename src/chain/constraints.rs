@@ -129,7 +129,12 @@ impl LineConstraints {
     }
 
     /// The constraints of two cones of this half-angle about the axes of take-off and landing.
-    fn about([takeoff, landing]: [Angle; 2], cone_half_angle: Angle, takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64) -> Self {
+    fn about(
+        [takeoff, landing]: [Angle; 2],
+        cone_half_angle: Angle,
+        takeoff_speed_max_m_s: f64,
+        landing_speed_max_m_s: f64,
+    ) -> Self {
         Self {
             takeoff: ContactRule::new(AngleInterval::about(takeoff, cone_half_angle), takeoff_speed_max_m_s),
             landing: ContactRule::new(AngleInterval::about(landing, cone_half_angle), landing_speed_max_m_s),
@@ -292,11 +297,7 @@ impl GroundRefusal {
             Self::TouchdownSlope { tilt, friction } => Some(tilt.degrees() - friction.half_angle().degrees()),
             Self::TouchdownCone { angles } => Some((angles.min.degrees() + 90.0).max(-90.0 - angles.max.degrees())),
             Self::Footprint(refusal) => refusal.excess_deg(),
-            Self::NoGround
-            | Self::KeepOut
-            | Self::SpeedZero
-            | Self::TouchdownSpeed { .. }
-            | Self::FacesDown { .. } => None,
+            Self::NoGround | Self::KeepOut | Self::SpeedZero | Self::TouchdownSpeed { .. } | Self::FacesDown { .. } => None,
         }
     }
 }

@@ -65,8 +65,7 @@ pub(crate) fn facet_constraints(
             .ok_or(GroundRefusal::CrossSlope { cross_slope, friction: cone }),
     };
     let ground = SegmentGround { form: GroundForm::Surface { friction, cross_slope }, keep_out: facet.keep_out };
-    let too_steep =
-        rest_slope(&ground, surface).map(|max| GroundRefusal::TooSteep { tilt, max: Angle::from_slope(max) });
+    let too_steep = rest_slope(&ground, surface).map(|max| GroundRefusal::TooSteep { tilt, max: Angle::from_slope(max) });
     let refusal = if facet.keep_out { Some(GroundRefusal::KeepOut) } else { too_steep };
     let touchdown = limits.landing.brakes().then(|| {
         let refused = match grip {

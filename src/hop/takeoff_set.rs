@@ -3,8 +3,8 @@
 use super::{Conflict, HopTest, Shortfall, TerrainPoint, terrain_limit};
 use crate::{
     ballistics::{
-        Arc, ContactLimits, FlightEnvelope, LineOfSight, TakeoffChoice, TakeoffSpeeds, least_landing_speed_m_s, least_takeoff_speed_m_s,
-        limits,
+        Arc, ContactLimits, FlightEnvelope, LineOfSight, TakeoffChoice, TakeoffSpeeds, least_landing_speed_m_s,
+        least_takeoff_speed_m_s, limits,
     },
     chain::{ContactRule, GroundRefusal, Station},
     quantity::{Angle, AngleInterval, SlopeInterval, VertexId},
@@ -152,8 +152,7 @@ impl LimitInterval {
 }
 
 /// The line of sight as a limit: open at its lower end, since an arc always has a positive loft.
-const ABOVE_SIGHT: LimitInterval =
-    LimitInterval::new(Limit::LineOfSight, SlopeInterval { lower: 0.0, upper: f64::INFINITY }, None);
+const ABOVE_SIGHT: LimitInterval = LimitInterval::new(Limit::LineOfSight, SlopeInterval { lower: 0.0, upper: f64::INFINITY }, None);
 
 /// Every limit that applies to a pair, in the order of [`Limit::ALL`].
 fn all_limits(
@@ -163,9 +162,8 @@ fn all_limits(
     direction: Direction,
     sight: LineOfSight,
 ) -> Vec<LimitInterval> {
-    let rule = |station, contact| {
-        test.chain().check_contact(station, contact, direction).map(|rule: ContactRule| rule.contact_limits())
-    };
+    let rule =
+        |station, contact| test.chain().check_contact(station, contact, direction).map(|rule: ContactRule| rule.contact_limits());
     let mut found = envelope_limits(test.envelope(), sight, rule(takeoff, Contact::Takeoff), rule(landing, Contact::Landing));
     if let Some(vertex) = test.chain().geometry().bend_between(takeoff.point.x_m, landing.point.x_m) {
         let x_m = test.chain().geometry().vertices()[vertex.index()].x_m;
@@ -231,11 +229,7 @@ fn terrain(test: &HopTest, takeoff: &Station, landing: &Station, sight: LineOfSi
 }
 
 /// The limits of the machine that this hopper has.
-fn machine_limits(
-    envelope: &FlightEnvelope,
-    sight: LineOfSight,
-    add: &mut impl FnMut(Limit, SlopeInterval, Option<Shortfall>),
-) {
+fn machine_limits(envelope: &FlightEnvelope, sight: LineOfSight, add: &mut impl FnMut(Limit, SlopeInterval, Option<Shortfall>)) {
     let hopper = envelope.hopper();
     if hopper.limits().takeoff_angle_min.is_some() || hopper.limits().takeoff_angle_max.is_some() {
         add(Limit::MechanicalAngle, limits::takeoff_cone(sight, envelope.mechanism_slopes()), None);

@@ -22,10 +22,7 @@ struct Line {
 impl Line {
     /// Moved up by the heights of another line.
     fn raised(self, by: Self, sign: f64) -> Self {
-        Self {
-            at_takeoff_m: self.at_takeoff_m + sign * by.at_takeoff_m,
-            at_landing_m: self.at_landing_m + sign * by.at_landing_m,
-        }
+        Self { at_takeoff_m: self.at_takeoff_m + sign * by.at_takeoff_m, at_landing_m: self.at_landing_m + sign * by.at_landing_m }
     }
 }
 
@@ -134,7 +131,8 @@ pub fn blocked_lofts(run_m: f64, [from, to]: [ChainPoint; 2], clearance: Clearan
             d_m => from.z_m + (to.z_m - from.z_m) * ((d_m - from.x_m) / length_m),
         };
         // A vertical segment has two heights at one distance.
-        let [low, high] = if length_m > 0.0 { [[z_m(begin_m), z_m(end_m)]; 2] } else { [[from.z_m.min(to.z_m); 2], [from.z_m.max(to.z_m); 2]] };
+        let [low, high] =
+            if length_m > 0.0 { [[z_m(begin_m), z_m(end_m)]; 2] } else { [[from.z_m.min(to.z_m); 2], [from.z_m.max(to.z_m); 2]] };
         let moved = |z_m: [f64; 2], sign: f64| {
             [ChainPoint::new(begin_m, z_m[0] + sign * eps_m(begin_m)), ChainPoint::new(end_m, z_m[1] + sign * eps_m(end_m))]
         };

@@ -227,13 +227,7 @@ impl MeshGround {
     }
 
     /// Whether a part of the mesh within a rectangle of the plane of a hop may block lofts of an interval that are not blocked yet.
-    fn may_block(
-        &self,
-        course: &MeshCourse,
-        [low, high]: [ChainPoint; 2],
-        within: SlopeInterval,
-        blocked: &BlockedLofts,
-    ) -> bool {
+    fn may_block(&self, course: &MeshCourse, [low, high]: [ChainPoint; 2], within: SlopeInterval, blocked: &BlockedLofts) -> bool {
         let run_m = course.sight.run_m();
         let (from_m, to_m) = (low.x_m.max(0.0), high.x_m.min(run_m));
         if from_m > to_m {

@@ -63,10 +63,7 @@ impl MeshGround {
     pub fn takeoff_set(&self, takeoff: &MeshContact, landing: &MeshContact) -> Option<MeshTakeoffSet> {
         let course = self.course(takeoff, landing)?;
         let (heading, sight) = (course.plane.heading, course.sight);
-        let rules = [
-            self.allowed(takeoff, heading, Contact::Takeoff),
-            self.allowed(landing, heading, Contact::Landing),
-        ];
+        let rules = [self.allowed(takeoff, heading, Contact::Takeoff), self.allowed(landing, heading, Contact::Landing)];
         let refused_by = rules.map(|rule| rule.err().map(|(_, facet)| facet));
         let [from, to] = rules.map(|rule| rule.map_err(|(refusal, _): (GroundRefusal, _)| refusal));
         let limits = envelope_limits(self.envelope(), sight, from, to);
@@ -105,16 +102,18 @@ impl MeshGround {
             (true, Some(part), Some(command)) => {
                 Some(MeshConflict::Limits(Conflict::of_commands(self.envelope(), sight, part.lofts, binding, *command)))
             }
-            (true, ..) => blocked.spans().iter().find(|span| span.lofts.lower <= within.lower && within.upper <= span.lofts.upper).map(
-                |span| {
-                    let angle = |loft: f64| Angle::from_slope(sight.slope() + loft).degrees();
-                    let below = (span.lofts.lower > 0.0).then(|| angle(within.lower) - angle(span.lofts.lower));
-                    let above = span.lofts.upper.is_finite().then(|| angle(span.lofts.upper) - angle(within.upper));
-                    let gap_deg = below.into_iter().chain(above).min_by(f64::total_cmp);
-                    let [min, max] = [within.lower, within.upper].map(|loft| Angle::from_slope(sight.slope() + loft));
-                    MeshConflict::Terrain { left: AngleInterval { min, max }, blocked: *span, gap_deg }
-                },
-            ),
+            (true, ..) => {
+                blocked.spans().iter().find(|span| span.lofts.lower <= within.lower && within.upper <= span.lofts.upper).map(
+                    |span| {
+                        let angle = |loft: f64| Angle::from_slope(sight.slope() + loft).degrees();
+                        let below = (span.lofts.lower > 0.0).then(|| angle(within.lower) - angle(span.lofts.lower));
+                        let above = span.lofts.upper.is_finite().then(|| angle(span.lofts.upper) - angle(within.upper));
+                        let gap_deg = below.into_iter().chain(above).min_by(f64::total_cmp);
+                        let [min, max] = [within.lower, within.upper].map(|loft| Angle::from_slope(sight.slope() + loft));
+                        MeshConflict::Terrain { left: AngleInterval { min, max }, blocked: *span, gap_deg }
+                    },
+                )
+            }
         };
         (windows, conflict)
     }
@@ -181,13 +180,12 @@ impl MeshTakeoffSet {
     pub fn arc(&self, choice: TakeoffChoice, gravity_m_s2: f64) -> Option<(MeshWindow, Arc)> {
         let sight = self.course.sight;
         let arcs = self.windows.iter().map(|window| (*window, Arc::new(sight, choice.loft(sight, window.lofts), gravity_m_s2)));
-        let width = |window: &MeshWindow| self.angles_of(window.lofts).map_or(0.0, |angles| angles.max.radians() - angles.min.radians());
+        let width =
+            |window: &MeshWindow| self.angles_of(window.lofts).map_or(0.0, |angles| angles.max.radians() - angles.min.radians());
         match choice {
             TakeoffChoice::LeastTime => { arcs }.next(),
             TakeoffChoice::LeastSpeed => arcs.min_by(|(_, a), (_, b)| a.takeoff_speed_m_s().total_cmp(&b.takeoff_speed_m_s())),
-            TakeoffChoice::MidRange | TakeoffChoice::MostReliable => {
-                arcs.min_by(|(a, _), (b, _)| width(b).total_cmp(&width(a)))
-            }
+            TakeoffChoice::MidRange | TakeoffChoice::MostReliable => arcs.min_by(|(a, _), (b, _)| width(b).total_cmp(&width(a))),
         }
     }
 }
