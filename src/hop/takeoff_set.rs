@@ -270,6 +270,7 @@ fn commands(envelope: &FlightEnvelope, sight: LineOfSight) -> Option<LimitInterv
 ///
 /// # Errors
 /// The conflict that leaves it empty.
+#[expect(clippy::result_large_err, reason = "one value per explained pair, which is not kept in lists")]
 pub(crate) fn joint(sight: LineOfSight, limits: &[LimitInterval]) -> Result<(SlopeInterval, Binding), Conflict> {
     if let Some(alone) = limits.iter().find(|limit| limit.lofts.is_empty()) {
         return Err(Conflict::Alone(*alone));

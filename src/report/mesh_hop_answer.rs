@@ -20,6 +20,8 @@ use crate::{
 /// The answer of `chta hop` over a mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeshHopAnswer {
+    /// Metres per unit of the mesh's file.
+    pub mesh_scale: f64,
     /// The take-off, on the surface.
     pub takeoff: MeshContactRecord,
     /// The landing, on the surface.
@@ -153,12 +155,12 @@ pub enum MeshBindingRecord {
 }
 
 impl MeshHopAnswer {
-    /// The answer for the set of one hop between two contacts, given at two points.
+    /// The answer for the set of one hop between two contacts, given at two points of a mesh of some metres per unit of its file.
     pub fn new(
         ground: &MeshGround,
         set: &MeshTakeoffSet,
         contacts: [&MeshContact; 2],
-        given_m: [[f64; 3]; 2],
+        (given_m, mesh_scale): ([[f64; 3]; 2], f64),
         choice: TakeoffChoice,
     ) -> Self {
         let (sight, gravity) = (set.course().sight, ground.envelope().gravity_m_s2());
@@ -169,6 +171,7 @@ impl MeshHopAnswer {
         let [takeoff, landing] = [0, 1].map(|i| MeshContactRecord::new(ground, contacts[i], given_m[i]));
         let end = |end| MeshWindowEndRecord::new(ground, end);
         Self {
+            mesh_scale,
             takeoff,
             landing,
             heading_deg: heading_deg(contacts[0].point_m().xy(), contacts[1].point_m().xy()),
@@ -291,7 +294,9 @@ pub fn mesh_hop_text(answer: &MeshHopAnswer) -> String {
         [one] => sheet.line(format_args!("feasible: take-off angles {}", window_line(one))),
         several => {
             sheet.line(format_args!("feasible: take-off angles in {} windows", several.len()));
-            several.iter().for_each(|window| sheet.line(format_args!("  {}", window_line(window))));
+            for window in several {
+                sheet.line(format_args!("  {}", window_line(window)));
+            }
         }
     }
     if let MeshBindingRecord::Conflict { sentence, .. } = &answer.binding {

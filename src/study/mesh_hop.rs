@@ -122,7 +122,7 @@ pub fn mesh_hop(question: &MeshHopQuestion<'_>) -> Result<MeshHopped, MeshHopErr
     let same = MeshHopError::SamePlace { x_m: at.x, y_m: at.y };
     let set = ground.takeoff_set(takeoff, landing).ok_or(same)?;
     let given_m = ends_m.map(|end| end.coords.into());
-    let answer = MeshHopAnswer::new(&ground, &set, [takeoff, landing], given_m, scenario.search.takeoff);
+    let answer = MeshHopAnswer::new(&ground, &set, [takeoff, landing], (given_m, *scale), scenario.search.takeoff);
     let extremes = answer.best.map_or_else(Extremes::default, |best| Extremes {
         range_m: set.course().sight.run_m(),
         height_m: best.apex_height_m,

@@ -70,7 +70,7 @@ impl EndOptions {
                     return Err(Failure::message(format!("{option}: {}; {name} is a chain", at.misfit_along_chain())));
                 }
                 Some(at @ Position::InSpace(_)) => {
-                    return Err(Failure::message(format!("{option}: {}; {name} is no mesh here", at.misfit_on_map())));
+                    return Err(Failure::message(format!("{option}: {}; {name} is taken along its transect", at.misfit_on_map())));
                 }
                 None if on_raster => {
                     let (end, option) = (end.name(), self.names.map_or("", |names| names[end as usize]));

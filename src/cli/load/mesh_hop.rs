@@ -72,10 +72,9 @@ pub(crate) fn load_mesh_hop(terrain: &Path, common: &CommonArgs, ends: EndOption
     let warnings: Vec<String> = Purpose::Hop.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
     output::warn_all(common.quiet, &warnings);
     claims::reads(&mesh);
-    let mut document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
+    // As of maps, without terrain: the inputs name the mesh.
+    let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
     verbose::settings(&document, &scenario.search);
-    document["terrain"]["mesh"] = relative_name(&mesh).into();
-    document["terrain"]["mesh_scale"] = scale.into();
     let inputs = checksums(std::slice::from_ref(&mesh), &relative_name)?;
     let record = CaseRecord { scenario: document, inputs, warnings, crs: None };
     Ok(Some(MeshHopInput { mesh, scale, ends_m, scenario, record }))

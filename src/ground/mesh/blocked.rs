@@ -53,12 +53,11 @@ impl BlockedLofts {
                 (span.lofts.upper, span.upper) = (known.lofts.upper, known.upper);
             }
         }
-        match last - first {
-            0 => self.spans.insert(first, span),
-            _ => {
-                self.spans[first] = span;
-                self.spans.drain(first + 1..last);
-            }
+        if first == last {
+            self.spans.insert(first, span);
+        } else {
+            self.spans[first] = span;
+            self.spans.drain(first + 1..last);
         }
     }
 

@@ -205,9 +205,12 @@ impl MeshGround {
         if to.x_m > run_m - near_m {
             end = if to.x_m > run_m { at(run_m) } else { ChainPoint::new(run_m, to.z_m) };
         }
-        // A facet that one stands on passes through the contact itself, not beside it by the rounding of a crossing.
-        let left = takeoff.facet(facet).filter(|_| begin.x_m == 0.0);
-        let right = landing.facet(facet).filter(|_| end.x_m == run_m);
+        // A facet that one stands on passes through the contact itself, not beside it by the rounding of a crossing. (The border of one
+        // that lies in the plane as a whole may pass elsewhere.)
+        let steepness = 1.0 + ((to.z_m - from.z_m) / (to.x_m - from.x_m)).abs();
+        let on_contact = |point: ChainPoint| point.z_m.abs() <= near_m * steepness;
+        let left = takeoff.facet(facet).filter(|_| begin.x_m == 0.0 && on_contact(begin));
+        let right = landing.facet(facet).filter(|_| end.x_m == run_m && on_contact(end));
         if left.is_some() {
             begin.z_m = 0.0;
         }

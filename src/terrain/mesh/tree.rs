@@ -174,7 +174,7 @@ impl MeshTree {
     ) -> ControlFlow<()> {
         self.walk(
             |bounds| plane.across(bounds, self.resolution_m).is_some_and(&mut enters),
-            |facet, corners| cut_triangle(plane, corners, |segment| visit(facet, segment)),
+            |facet, corners| cut_triangle(plane, corners, self.resolution_m, |segment| visit(facet, segment)),
         )
     }
 
@@ -311,14 +311,17 @@ fn split(all: &[[Point3<f64>; 3]], middles: &[Point3<f64>], order: &mut [u32], f
     nodes[at].count = 0;
 }
 
-/// The segments in which a triangle meets a vertical plane.
+/// The segments in which a triangle meets a vertical plane. A corner this near to the plane lies in it, so that a plane along an edge
+/// meets the whole edge.
 #[inline]
 fn cut_triangle(
     plane: &VerticalPlane,
     corners: &[Point3<f64>; 3],
+    near_m: f64,
     mut visit: impl FnMut([ChainPoint; 2]) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
-    let left = [plane.left_m(corners[0]), plane.left_m(corners[1]), plane.left_m(corners[2])];
+    let snapped = |left_m: f64| if left_m.abs() <= near_m { 0.0 } else { left_m };
+    let left = corners.map(|corner| snapped(plane.left_m(corner)));
     if (left[0] > 0.0 && left[1] > 0.0 && left[2] > 0.0) || (left[0] < 0.0 && left[1] < 0.0 && left[2] < 0.0) {
         return ControlFlow::Continue(());
     }
