@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Footing, Footprint, FootprintRefusal, GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints,
-    SegmentGround, Station, rest_slope, touchdown::touchdown_rule,
+    ContactRule, Footing, Footprint, FootprintRefusal, GroundForm, GroundRefusal, LineConstraints, PolygonalChain,
+    SegmentConstraints, SegmentGround, Station, rest_slope, touchdown::touchdown_rule,
 };
 use crate::{
     ballistics::PathBounds,
@@ -147,7 +147,7 @@ impl ConstrainedChain {
         }
         let bound = |contact: Contact| {
             let rules = segments.iter().flat_map(|s| Direction::BOTH.map(|d| s.allowed(contact, d))).flatten();
-            rules.map(super::ContactRule::speed_max_m_s).fold(0.0, f64::max)
+            rules.map(ContactRule::speed_max_m_s).fold(0.0, f64::max)
         };
         let speed_bounds_m_s = (bound(Contact::Takeoff), bound(Contact::Landing));
         let height_bound_m = geometry.vertices().iter().map(|v| v.z_m.abs()).fold(0.0, f64::max);
@@ -219,12 +219,7 @@ impl ConstrainedChain {
     ///
     /// # Errors
     /// The refusal by the ground.
-    pub fn check_contact(
-        &self,
-        station: &Station,
-        contact: Contact,
-        direction: Direction,
-    ) -> Result<super::ContactRule, GroundRefusal> {
+    pub fn check_contact(&self, station: &Station, contact: Contact, direction: Direction) -> Result<ContactRule, GroundRefusal> {
         let id = station.ruling_segment(contact, direction, self.segments.len()).ok_or(GroundRefusal::NoGround)?;
         let checked = self.segments.get(id.index()).ok_or(GroundRefusal::NoGround)?.check_contact(contact, direction);
         match checked {
@@ -260,7 +255,7 @@ impl ConstrainedChain {
 
     /// The rule of a contact at a station if the ground allows it. This is the version for inner loops.
     #[inline]
-    pub(crate) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Option<&super::ContactRule> {
+    pub(crate) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Option<&ContactRule> {
         let id = station.ruling_segment(contact, direction, self.segments.len())?;
         let rule = self.segments.get(id.index())?.allowed(contact, direction)?;
         (self.footprint.is_none() || self.footprint_refusal(station, id).is_none()).then_some(rule)
@@ -332,18 +327,34 @@ pub(crate) fn resolve_constraints(
             (on(slope), on(-slope))
         }
     };
-    let unbounded = |c: &Result<LineConstraints, GroundRefusal>| {
-        c.is_ok_and(|c| !(c.takeoff.speed_max_m_s().is_finite() && c.landing.speed_max_m_s().is_finite()))
-    };
-    if unbounded(&forward) || unbounded(&reverse) {
-        return Err(ConstraintProblem::NoSpeed(id));
-    }
     let tilt = tilt_slope(slope, ground.cross_slope().slope());
     let friction = ground.friction_under(surface);
     let touchdown =
         hopper.limits().landing.touchdown_speed_m_s().map(|speed_m_s| {
             [forward, reverse].map(|line| touchdown_rule(line, friction.map(|friction| (tilt, friction)), speed_m_s))
         });
+    // With a footprint, the plane fitted over it is held against the rest slope, contact by contact.
+    let too_steep = rest_slope(ground, surface)
+        .filter(|&max| tilt > max && Footprint::of(hopper).is_none())
+        .map(|max| GroundRefusal::TooSteep { tilt: Angle::from_slope(tilt), max: Angle::from_slope(max) });
+    let refusal = if ground.keep_out { Some(GroundRefusal::KeepOut) } else { too_steep };
+    commanded(id, [forward, reverse], (refusal, touchdown), hopper, gravity)
+}
+
+/// The constraints of lines of both directions, with the speeds of the machine's commands below the escape speed.
+pub(super) fn commanded(
+    id: SegmentId,
+    lines: [Result<LineConstraints, GroundRefusal>; 2],
+    (refusal, touchdown): (Option<GroundRefusal>, Option<[Result<ContactRule, GroundRefusal>; 2]>),
+    hopper: &Hopper,
+    gravity: Gravity,
+) -> Result<SegmentConstraints, ConstraintProblem> {
+    let unbounded = |c: &Result<LineConstraints, GroundRefusal>| {
+        c.is_ok_and(|c| !(c.takeoff.speed_max_m_s().is_finite() && c.landing.speed_max_m_s().is_finite()))
+    };
+    if lines.iter().any(unbounded) {
+        return Err(ConstraintProblem::NoSpeed(id));
+    }
     let cap_m_s = gravity.speed_cap_m_s();
     // A touchdown with brakes is no end of an arc.
     let landing_cap_m_s = if touchdown.is_some() { f64::INFINITY } else { cap_m_s };
@@ -352,12 +363,7 @@ pub(crate) fn resolve_constraints(
         let takeoff_m_s = steps.speed_not_above_m_s(line.takeoff.speed_max_m_s().min(cap_m_s));
         line.capped(takeoff_m_s, landing_cap_m_s)
     };
-    let [forward, reverse] = [forward, reverse].map(|line| line.map(commanded));
-    // With a footprint, the plane fitted over it is held against the rest slope, contact by contact.
-    let too_steep = rest_slope(ground, surface)
-        .filter(|&max| tilt > max && Footprint::of(hopper).is_none())
-        .map(|max| GroundRefusal::TooSteep { tilt: Angle::from_slope(tilt), max: Angle::from_slope(max) });
-    let refusal = if ground.keep_out { Some(GroundRefusal::KeepOut) } else { too_steep };
+    let [forward, reverse] = lines.map(|line| line.map(commanded));
     let constraints = SegmentConstraints::new(forward, reverse, refusal);
     Ok(touchdown.map_or(constraints, |touchdown| constraints.with_touchdown(touchdown)))
 }

@@ -1,6 +1,9 @@
 //! The constraints of one segment, for both directions of travel.
 
-use std::fmt;
+use std::{
+    f64::consts::{FRAC_PI_2, PI},
+    fmt,
+};
 
 use crate::{
     ballistics::ContactLimits,
@@ -86,10 +89,55 @@ impl LineConstraints {
     /// ```
     pub fn from_cone(slope: f64, cone_half_angle: Angle, takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64) -> Self {
         let alpha = Angle::from_slope(slope).radians();
-        let about = |axis: f64| AngleInterval::about(Angle::from_radians(axis), cone_half_angle);
+        let axes = [alpha + FRAC_PI_2, alpha - FRAC_PI_2].map(Angle::from_radians);
+        Self::about(axes, cone_half_angle, takeoff_speed_max_m_s, landing_speed_max_m_s)
+    }
+
+    /// The constraints from a friction cone about any normal, intersected by the plane of travel: walls and overhangs as well.
+    ///
+    /// ```text
+    ///     take-off: gamma -+ delta,   landing: gamma + pi -+ delta,   gamma in (-pi, pi] the elevation of the normal, seen in the plane
+    /// ```
+    ///
+    /// With delta below pi/2 either has at most one interval inside (-pi/2, pi/2): a landing lies in the opposite half of the cone.
+    ///
+    /// Source: Campana and Laumond 2016, section IV-A, whose Algorithm 1 lists the cases of the landing one by one.
+    ///
+    /// # Arguments
+    /// `normal_elevation`: gamma; the rest as in [`from_cone`](Self::from_cone).
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{chain::LineConstraints, quantity::Angle};
+    /// // A wall that faces the traveller's way, friction angle 30 degrees: take-off between -30 and 30 degrees, no landing.
+    /// let wall = LineConstraints::about_normal(Angle::from_degrees(0.0), Angle::from_degrees(30.0), 10.0, 8.0);
+    /// assert!((wall.takeoff.angles().max.degrees() - 30.0).abs() < 1e-12 && wall.landing.slopes().is_empty());
+    /// // A ceiling: take-off steeper down than -60 degrees, landing steeper up than 60.
+    /// let ceiling = LineConstraints::about_normal(Angle::from_degrees(-90.0), Angle::from_degrees(30.0), 10.0, 8.0);
+    /// assert!((ceiling.landing.angles().min.degrees() - 60.0).abs() < 1e-12);
+    /// ```
+    pub fn about_normal(
+        normal_elevation: Angle,
+        cone_half_angle: Angle,
+        takeoff_speed_max_m_s: f64,
+        landing_speed_max_m_s: f64,
+    ) -> Self {
+        let gamma = normal_elevation.radians();
+        let opposite = if gamma > 0.0 { gamma - PI } else { gamma + PI };
+        let axes = [gamma, opposite].map(Angle::from_radians);
+        Self::about(axes, cone_half_angle, takeoff_speed_max_m_s, landing_speed_max_m_s)
+    }
+
+    /// The constraints of two cones of this half-angle about the axes of take-off and landing.
+    fn about(
+        [takeoff, landing]: [Angle; 2],
+        cone_half_angle: Angle,
+        takeoff_speed_max_m_s: f64,
+        landing_speed_max_m_s: f64,
+    ) -> Self {
         Self {
-            takeoff: ContactRule::new(about(alpha + std::f64::consts::FRAC_PI_2), takeoff_speed_max_m_s),
-            landing: ContactRule::new(about(alpha - std::f64::consts::FRAC_PI_2), landing_speed_max_m_s),
+            takeoff: ContactRule::new(AngleInterval::about(takeoff, cone_half_angle), takeoff_speed_max_m_s),
+            landing: ContactRule::new(AngleInterval::about(landing, cone_half_angle), landing_speed_max_m_s),
         }
     }
 
@@ -174,6 +222,16 @@ pub enum GroundRefusal {
         /// Half-angle of the cone.
         friction: FrictionCone,
     },
+    /// The surface faces down, where angles relative to a slope mean nothing.
+    FacesDown {
+        /// Inclination of the surface from the horizontal, 90 degrees or more.
+        tilt: Angle,
+    },
+    /// The facets that meet at the point leave no direction in common.
+    FacetsDisagree {
+        /// From the greatest lower end to the least upper end of their cones.
+        angles: AngleInterval,
+    },
     /// The ground under the hopper's footprint is too steep, too rough or not known.
     Footprint(super::FootprintRefusal),
     /// A speed limit of zero.
@@ -212,8 +270,14 @@ impl GroundRefusal {
             (Self::KeepOut, _) => Limit::KeepOut,
             (Self::TooSteep { .. }, _) => Limit::RestSlope,
             (Self::Footprint(refusal), _) => refusal.limit(),
-            (Self::CrossSlope { .. } | Self::NothingAhead { .. }, Contact::Takeoff) => Limit::TakeoffCone,
-            (Self::CrossSlope { .. } | Self::NothingAhead { .. }, Contact::Landing) => Limit::LandingCone,
+            (
+                Self::CrossSlope { .. } | Self::NothingAhead { .. } | Self::FacesDown { .. } | Self::FacetsDisagree { .. },
+                Contact::Takeoff,
+            ) => Limit::TakeoffCone,
+            (
+                Self::CrossSlope { .. } | Self::NothingAhead { .. } | Self::FacesDown { .. } | Self::FacetsDisagree { .. },
+                Contact::Landing,
+            ) => Limit::LandingCone,
             (Self::TouchdownSlope { .. } | Self::TouchdownCone { .. } | Self::TouchdownSpeed { .. }, _) => Limit::Touchdown,
             (Self::SpeedZero, Contact::Takeoff) => Limit::TakeoffSpeed,
             (Self::SpeedZero, Contact::Landing) => Limit::LandingSpeed,
@@ -229,10 +293,11 @@ impl GroundRefusal {
                 let (min, max) = (angles.min.degrees(), angles.max.degrees());
                 Some(if min > max { min - max } else { (min - 90.0).max(-90.0 - max) })
             }
+            Self::FacetsDisagree { angles } => Some(angles.min.degrees() - angles.max.degrees()),
             Self::TouchdownSlope { tilt, friction } => Some(tilt.degrees() - friction.half_angle().degrees()),
             Self::TouchdownCone { angles } => Some((angles.min.degrees() + 90.0).max(-90.0 - angles.max.degrees())),
             Self::Footprint(refusal) => refusal.excess_deg(),
-            Self::NoGround | Self::KeepOut | Self::SpeedZero | Self::TouchdownSpeed { .. } => None,
+            Self::NoGround | Self::KeepOut | Self::SpeedZero | Self::TouchdownSpeed { .. } | Self::FacesDown { .. } => None,
         }
     }
 }
@@ -250,6 +315,17 @@ impl fmt::Display for GroundRefusal {
                 "its cross-slope of {:.3} deg is over the friction angle of {:.3} deg",
                 cross_slope.degrees(),
                 friction.half_angle().degrees()
+            ),
+            Self::FacesDown { tilt } => write!(
+                f,
+                "its surface faces down, {:.3} deg from the horizontal, where angles from the slope mean nothing: give friction instead",
+                tilt.degrees()
+            ),
+            Self::FacetsDisagree { angles } => write!(
+                f,
+                "the facets that meet at it have no direction in common: one asks for at least {:.3} deg, another for at most {:.3} deg",
+                angles.min.degrees(),
+                angles.max.degrees()
             ),
             Self::Footprint(refusal) => refusal.fmt(f),
             Self::SpeedZero => write!(f, "its speed limit is 0"),

@@ -11,6 +11,7 @@
 mod constrained;
 mod constraints;
 pub mod csv;
+mod facet;
 mod footing;
 mod ground;
 mod polygonal;
@@ -21,6 +22,7 @@ mod touchdown;
 pub(crate) use constrained::resolve_constraints;
 pub use constrained::{ConstrainedChain, ConstraintProblem, ConstraintProblems};
 pub use constraints::{ContactRule, GroundRefusal, LineConstraints, SegmentConstraints};
+pub(crate) use facet::{FacetGround, facet_constraints};
 pub use footing::FootprintRefusal;
 pub(crate) use footing::{Footing, Footprint, contacts_stand, rest_slope};
 pub use ground::{GroundForm, SegmentGround};

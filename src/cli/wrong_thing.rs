@@ -84,7 +84,8 @@ impl Role {
         match self {
             Self::Chain => "a chain CSV, a scenario (TOML) or a result (JSON)",
             Self::HopTerrain => {
-                "a chain CSV, an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid), a scenario (TOML) or a result (JSON)"
+                "a chain CSV, an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid), a mesh (OBJ, STL, PLY), a scenario \
+                 (TOML) or a result (JSON)"
             }
             Self::Scenario | Self::ScenarioOption => "a scenario (TOML) or a result (JSON)",
             Self::Dem | Self::DemKey => "an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid)",
@@ -136,7 +137,7 @@ impl Role {
         is_unknown
             || match self {
                 Self::Chain => *kind == Kind::ChainCsv || of_scenario,
-                Self::HopTerrain => *kind == Kind::ChainCsv || of_scenario || of_dem || of_points,
+                Self::HopTerrain => *kind == Kind::ChainCsv || of_scenario || of_dem || of_mesh || of_points,
                 Self::Scenario | Self::ScenarioOption => of_scenario,
                 Self::Dem | Self::DemKey => of_dem || of_points,
                 Self::MapTarget => of_dem || of_points || of_scenario,
@@ -175,7 +176,7 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
         (FileKind::Document(_) | FileKind::Empty | FileKind::Text | FileKind::Binary, _) => {
             format!("check the path: give {}", role.expected())
         }
-        (FileKind::ForeignMesh(_), Role::Terrain | Role::MeshKey) => {
+        (FileKind::ForeignMesh(_), Role::Terrain | Role::HopTerrain | Role::MeshKey) => {
             "export it as OBJ, STL or PLY, z up, and give that file".to_owned()
         }
         (FileKind::Picture(_), Role::Dem | Role::HopTerrain | Role::MapTarget | Role::DemKey | Role::Terrain) => {
@@ -224,7 +225,7 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
         (FileKind::Raster(_) | FileKind::ForeignRaster(_), Role::Chain | Role::Pairs | Role::Scenario | Role::ScenarioOption) => {
             from_terrain("dem", &name, &toml)
         }
-        (FileKind::Mesh(..), Role::Chain | Role::HopTerrain | Role::Pairs | Role::Scenario | Role::ScenarioOption) => {
+        (FileKind::Mesh(..), Role::Chain | Role::Pairs | Role::Scenario | Role::ScenarioOption) => {
             from_terrain("mesh", &name, &toml)
         }
         (FileKind::Mesh(..), Role::Dem | Role::MapTarget) => {

@@ -31,6 +31,7 @@ mod heading;
 mod keys;
 mod legend;
 mod map;
+mod mesh_hop;
 mod of_answers;
 mod palette;
 mod picture;
@@ -60,6 +61,7 @@ pub use map::{
     GoalMark, HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure,
     MapPosts, PlanView, RasterStyle, ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,
 };
+pub use mesh_hop::{MeshHopFigure, draw_mesh_hop};
 pub use picture::{Caption, Picture, PictureFormat};
 pub use rose::draw_rose;
 pub use scale::Scale;

@@ -49,7 +49,10 @@ impl Closure {
             GroundRefusal::TooSteep { .. } => Self::RestSlope,
             GroundRefusal::Footprint(FootprintRefusal::TooRough { .. }) => Self::Roughness,
             GroundRefusal::Footprint(_) => Self::FootprintSlope,
-            GroundRefusal::CrossSlope { .. } | GroundRefusal::NothingAhead { .. } => Self::Cones,
+            GroundRefusal::CrossSlope { .. }
+            | GroundRefusal::NothingAhead { .. }
+            | GroundRefusal::FacesDown { .. }
+            | GroundRefusal::FacetsDisagree { .. } => Self::Cones,
             // A landing alone: such ground allows take-offs, or is closed for their reason.
             GroundRefusal::TouchdownSlope { .. } | GroundRefusal::TouchdownCone { .. } | GroundRefusal::TouchdownSpeed { .. } => {
                 Self::Cones

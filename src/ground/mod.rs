@@ -18,6 +18,7 @@ mod first_contact;
 mod height_field;
 mod hop_reach;
 mod landing_share;
+mod mesh;
 mod posts;
 mod surface;
 mod sweep;
@@ -29,6 +30,10 @@ pub use first_contact::{ContactFailure, FirstContact, Flight, LiftoffVelocity, R
 pub use height_field::HeightField;
 pub(crate) use hop_reach::HopReach;
 pub(crate) use landing_share::LandingScatter;
+pub use mesh::{
+    BlockedSpan, MeshBuffers, MeshConflict, MeshContact, MeshContactFacet, MeshCourse, MeshGround, MeshTakeoffSet, MeshWindow,
+    MeshWindowEnd, NoMeshContact,
+};
 pub(crate) use posts::Offset;
 pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostHopsSize, PostRefusal};
 #[cfg(test)]

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use super::{Binding, HopTest, LimitInterval};
+use super::{Binding, LimitInterval};
 use crate::{
-    ballistics::{Arc, LineOfSight, TakeoffChoice, TakeoffSpeeds, least_takeoff_speed_m_s},
+    ballistics::{Arc, FlightEnvelope, LineOfSight, TakeoffChoice, TakeoffSpeeds, least_takeoff_speed_m_s},
     chain::GroundRefusal,
     quantity::SlopeInterval,
     world::{Contact, Limit},
@@ -71,8 +71,8 @@ pub enum Conflict {
 
 impl Conflict {
     /// The conflict of the machine's take-off speeds with an interval of lofts that all other limits leave.
-    pub(super) fn of_commands(
-        test: &HopTest,
+    pub(crate) fn of_commands(
+        envelope: &FlightEnvelope,
         sight: LineOfSight,
         lofts: SlopeInterval,
         binding: Binding,
@@ -80,17 +80,17 @@ impl Conflict {
     ) -> Self {
         let speed_m_s = |loft: f64| match loft {
             loft if loft <= 0.0 || loft.is_infinite() => f64::INFINITY,
-            loft => Arc::new(sight, loft, test.gravity_m_s2()).takeoff_speed_m_s(),
+            loft => Arc::new(sight, loft, envelope.gravity_m_s2()).takeoff_speed_m_s(),
         };
         let ends_m_s = [speed_m_s(lofts.lower), speed_m_s(lofts.upper)];
         let left_m_s = [speed_m_s(TakeoffChoice::LeastSpeed.loft(sight, lofts)), ends_m_s[0].max(ends_m_s[1])];
         let away_m_s = |speed_m_s: f64| (left_m_s[0] - speed_m_s).max(speed_m_s - left_m_s[1]);
-        let nearest_m_s = match test.takeoff_speeds() {
+        let nearest_m_s = match envelope.takeoff_speeds() {
             TakeoffSpeeds::Any => left_m_s[0],
             TakeoffSpeeds::AtLeast(least_m_s) => *least_m_s,
             TakeoffSpeeds::Levels(levels) => {
                 // A speed below that of the slowest arc of all is no remedy.
-                let slowest_m_s = least_takeoff_speed_m_s(sight, test.gravity_m_s2());
+                let slowest_m_s = least_takeoff_speed_m_s(sight, envelope.gravity_m_s2());
                 let possible = levels.as_slice().iter().filter(|level| **level >= slowest_m_s);
                 let nearest = possible.min_by(|a, b| away_m_s(**a).total_cmp(&away_m_s(**b)));
                 nearest.copied().unwrap_or(levels.highest_m_s())

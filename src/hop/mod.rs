@@ -19,5 +19,6 @@ pub use margins::{HopMargins, MARGINS, MarginRow};
 pub use reach_along_sight::ReachAlongSight;
 pub use segment_hops::{SegmentHops, SegmentReach, Split};
 pub use takeoff_set::{Binding, LimitInterval, SetWindow, TakeoffSet};
+pub(crate) use takeoff_set::{commanded_windows, envelope_limits, joint};
 pub use terrain::{TerrainPoint, terrain_limit};
 pub(crate) use terrain::{first_ahead, flown_past, ground_slope, slope_beyond};

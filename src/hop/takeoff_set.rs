@@ -2,8 +2,11 @@
 
 use super::{Conflict, HopTest, Shortfall, TerrainPoint, terrain_limit};
 use crate::{
-    ballistics::{Arc, LineOfSight, TakeoffChoice, TakeoffSpeeds, least_landing_speed_m_s, least_takeoff_speed_m_s, limits},
-    chain::{ContactRule, Station},
+    ballistics::{
+        Arc, ContactLimits, FlightEnvelope, LineOfSight, TakeoffChoice, TakeoffSpeeds, least_landing_speed_m_s,
+        least_takeoff_speed_m_s, limits,
+    },
+    chain::{ContactRule, GroundRefusal, Station},
     quantity::{Angle, AngleInterval, SlopeInterval, VertexId},
     world::{Contact, Direction, Limit},
 };
@@ -141,15 +144,15 @@ impl TakeoffSet {
     }
 }
 
+impl LimitInterval {
+    /// A limit without a place on the terrain.
+    const fn new(limit: Limit, lofts: SlopeInterval, shortfall: Option<Shortfall>) -> Self {
+        Self { limit, lofts, vertex: None, kink_x_m: None, gap: None, shortfall }
+    }
+}
+
 /// The line of sight as a limit: open at its lower end, since an arc always has a positive loft.
-const ABOVE_SIGHT: LimitInterval = LimitInterval {
-    limit: Limit::LineOfSight,
-    lofts: SlopeInterval { lower: 0.0, upper: f64::INFINITY },
-    vertex: None,
-    kink_x_m: None,
-    gap: None,
-    shortfall: None,
-};
+const ABOVE_SIGHT: LimitInterval = LimitInterval::new(Limit::LineOfSight, SlopeInterval { lower: 0.0, upper: f64::INFINITY }, None);
 
 /// Every limit that applies to a pair, in the order of [`Limit::ALL`].
 fn all_limits(
@@ -159,47 +162,57 @@ fn all_limits(
     direction: Direction,
     sight: LineOfSight,
 ) -> Vec<LimitInterval> {
-    let mut found = Vec::with_capacity(Limit::ALL.len());
-    let mut add =
-        |limit, lofts, vertex, shortfall| found.push(LimitInterval { limit, lofts, vertex, kink_x_m: None, gap: None, shortfall });
-    let mut allowed = |contact, station: &Station| -> Option<ContactRule> {
-        match test.chain().check_contact(station, contact, direction) {
-            Ok(rule) => Some(rule),
-            Err(refusal) => {
-                add(refusal.limit(contact), SlopeInterval::EMPTY, None, Some(Shortfall::Ground { contact, refusal }));
-                None
-            }
-        }
-    };
-    let from = allowed(Contact::Takeoff, takeoff);
-    let to = allowed(Contact::Landing, landing);
+    let rule =
+        |station, contact| test.chain().check_contact(station, contact, direction).map(|rule: ContactRule| rule.contact_limits());
+    let mut found = envelope_limits(test.envelope(), sight, rule(takeoff, Contact::Takeoff), rule(landing, Contact::Landing));
     if let Some(vertex) = test.chain().geometry().bend_between(takeoff.point.x_m, landing.point.x_m) {
         let x_m = test.chain().geometry().vertices()[vertex.index()].x_m;
-        add(Limit::Bend, SlopeInterval::EMPTY, Some(vertex), Some(Shortfall::Bend { x_m }));
+        let bend = LimitInterval::new(Limit::Bend, SlopeInterval::EMPTY, Some(Shortfall::Bend { x_m }));
+        found.push(LimitInterval { vertex: Some(vertex), ..bend });
     }
-    let gravity = test.gravity_m_s2();
-    if let Some(rule) = from {
-        add(Limit::TakeoffCone, limits::takeoff_cone(sight, rule.slopes()), None, None);
-        let lofts = limits::takeoff_speed(sight, rule.speed_max_m_s(), gravity);
-        let shortfall = lofts
-            .is_empty()
-            .then(|| Shortfall::Speed { needed_m_s: least_takeoff_speed_m_s(sight, gravity), limit_m_s: rule.speed_max_m_s() });
-        add(Limit::TakeoffSpeed, lofts, None, shortfall);
-    }
-    if to.is_some() && test.hopper().limits().landing.brakes() {
-        add(Limit::Touchdown, SlopeInterval::ALL, None, None);
-    } else if let Some(rule) = to {
-        add(Limit::LandingCone, limits::landing_cone(sight, rule.slopes()), None, None);
-        let lofts = limits::landing_speed(sight, rule.speed_max_m_s(), gravity);
-        let shortfall = lofts
-            .is_empty()
-            .then(|| Shortfall::Speed { needed_m_s: least_landing_speed_m_s(sight, gravity), limit_m_s: rule.speed_max_m_s() });
-        add(Limit::LandingSpeed, lofts, None, shortfall);
-    }
-    add(Limit::LineOfSight, ABOVE_SIGHT.lofts, None, None);
-    machine_limits(test, sight, &mut add);
     found.push(terrain(test, takeoff, landing, sight));
-    found.extend(commands(test, sight));
+    found.sort_by_key(|limit| limit.limit);
+    found
+}
+
+/// Every limit of a hop but those of the terrain between its contacts, in the order of [`Limit::ALL`].
+///
+/// `from`, `to`: what the ground allows at take-off and landing, or why it refuses them.
+pub(crate) fn envelope_limits(
+    envelope: &FlightEnvelope,
+    sight: LineOfSight,
+    from: Result<ContactLimits, GroundRefusal>,
+    to: Result<ContactLimits, GroundRefusal>,
+) -> Vec<LimitInterval> {
+    let mut found = Vec::with_capacity(Limit::ALL.len());
+    let mut add = |limit, lofts, shortfall| found.push(LimitInterval::new(limit, lofts, shortfall));
+    for (contact, allowed) in [(Contact::Takeoff, from), (Contact::Landing, to)] {
+        if let Err(refusal) = allowed {
+            add(refusal.limit(contact), SlopeInterval::EMPTY, Some(Shortfall::Ground { contact, refusal }));
+        }
+    }
+    let gravity = envelope.gravity_m_s2();
+    if let Ok(rule) = from {
+        add(Limit::TakeoffCone, limits::takeoff_cone(sight, rule.slopes), None);
+        let lofts = limits::takeoff_speed(sight, rule.speed_max_m_s, gravity);
+        let shortfall = lofts
+            .is_empty()
+            .then(|| Shortfall::Speed { needed_m_s: least_takeoff_speed_m_s(sight, gravity), limit_m_s: rule.speed_max_m_s });
+        add(Limit::TakeoffSpeed, lofts, shortfall);
+    }
+    if to.is_ok() && envelope.hopper().limits().landing.brakes() {
+        add(Limit::Touchdown, SlopeInterval::ALL, None);
+    } else if let Ok(rule) = to {
+        add(Limit::LandingCone, limits::landing_cone(sight, rule.slopes), None);
+        let lofts = limits::landing_speed(sight, rule.speed_max_m_s, gravity);
+        let shortfall = lofts
+            .is_empty()
+            .then(|| Shortfall::Speed { needed_m_s: least_landing_speed_m_s(sight, gravity), limit_m_s: rule.speed_max_m_s });
+        add(Limit::LandingSpeed, lofts, shortfall);
+    }
+    add(Limit::LineOfSight, ABOVE_SIGHT.lofts, None);
+    machine_limits(envelope, sight, &mut add);
+    found.extend(commands(envelope, sight));
     found.sort_by_key(|limit| limit.limit);
     found
 }
@@ -212,32 +225,28 @@ fn terrain(test: &HopTest, takeoff: &Station, landing: &Station, sight: LineOfSi
         Some(TerrainPoint::Kink(x_m)) => (None, Some(x_m)),
         None => (None, None),
     };
-    LimitInterval { limit: Limit::Terrain, lofts, vertex, kink_x_m, gap: None, shortfall: None }
+    LimitInterval { vertex, kink_x_m, ..LimitInterval::new(Limit::Terrain, lofts, None) }
 }
 
 /// The limits of the machine that this hopper has.
-fn machine_limits(
-    test: &HopTest,
-    sight: LineOfSight,
-    add: &mut impl FnMut(Limit, SlopeInterval, Option<VertexId>, Option<Shortfall>),
-) {
-    let hopper = test.hopper();
+fn machine_limits(envelope: &FlightEnvelope, sight: LineOfSight, add: &mut impl FnMut(Limit, SlopeInterval, Option<Shortfall>)) {
+    let hopper = envelope.hopper();
     if hopper.limits().takeoff_angle_min.is_some() || hopper.limits().takeoff_angle_max.is_some() {
-        add(Limit::MechanicalAngle, limits::takeoff_cone(sight, test.mechanism_slopes()), None, None);
+        add(Limit::MechanicalAngle, limits::takeoff_cone(sight, envelope.mechanism_slopes()), None);
     }
     if let Some(height_m) = hopper.limits().apex_height_max_m {
         let lofts = limits::apex_height(sight, height_m);
         let shortfall = lofts.is_empty().then(|| Shortfall::Height { needed_m: sight.rise_m(), limit_m: height_m });
-        add(Limit::ApexHeight, lofts, None, shortfall);
+        add(Limit::ApexHeight, lofts, shortfall);
     }
     if let Some(time_s) = hopper.limits().flight_time_max_s {
-        add(Limit::FlightTime, limits::flight_time(sight, time_s, test.gravity_m_s2()), None, None);
+        add(Limit::FlightTime, limits::flight_time(sight, time_s, envelope.gravity_m_s2()), None);
     }
 }
 
 /// The take-off speeds that the machine can be commanded, if they are a limit.
-fn commands(test: &HopTest, sight: LineOfSight) -> Option<LimitInterval> {
-    let (g, speeds) = (test.gravity_m_s2(), test.takeoff_speeds());
+fn commands(envelope: &FlightEnvelope, sight: LineOfSight) -> Option<LimitInterval> {
+    let (g, speeds) = (envelope.gravity_m_s2(), envelope.takeoff_speeds());
     let limit = speeds.limit()?;
     let (mut lofts, mut gap, mut shortfall) = (SlopeInterval::ALL, None, None);
     match speeds {
@@ -254,17 +263,21 @@ fn commands(test: &HopTest, sight: LineOfSight) -> Option<LimitInterval> {
             shortfall = lofts.is_empty().then(|| Shortfall::Speed { needed_m_s, limit_m_s: levels.highest_m_s() });
         }
     }
-    Some(LimitInterval { limit, lofts, vertex: None, kink_x_m: None, gap, shortfall })
+    Some(LimitInterval { gap, ..LimitInterval::new(limit, lofts, shortfall) })
 }
 
-/// The intersection of all limits with those that set its ends, or the conflict that leaves it empty.
-fn evaluate(test: &HopTest, sight: LineOfSight, limits: &[LimitInterval]) -> Verdict {
+/// The intersection of all limits but the machine's take-off speeds, and those that set its ends.
+///
+/// # Errors
+/// The conflict that leaves it empty.
+#[expect(clippy::result_large_err, reason = "one value per explained pair, which is not kept in lists")]
+pub(crate) fn joint(sight: LineOfSight, limits: &[LimitInterval]) -> Result<(SlopeInterval, Binding), Conflict> {
     if let Some(alone) = limits.iter().find(|limit| limit.lofts.is_empty()) {
-        return Verdict::Refused(Conflict::Alone(*alone));
+        return Err(Conflict::Alone(*alone));
     }
     let mut binding = Binding { lower: ABOVE_SIGHT, upper: ABOVE_SIGHT };
-    let commanded = test.takeoff_speeds().limit();
-    for &limit in limits.iter().filter(|limit| Some(limit.limit) != commanded) {
+    let is_command = |limit| matches!(limit, Limit::TakeoffSpeedMin | Limit::TakeoffSpeedLevels);
+    for &limit in limits.iter().filter(|limit| !is_command(limit.limit)) {
         if limit.lofts.lower > binding.lower.lofts.lower {
             binding.lower = limit;
         }
@@ -275,24 +288,41 @@ fn evaluate(test: &HopTest, sight: LineOfSight, limits: &[LimitInterval]) -> Ver
     let lofts = SlopeInterval { lower: binding.lower.lofts.lower, upper: binding.upper.lofts.upper };
     if lofts.is_empty() || lofts.upper <= 0.0 {
         let angle = |loft: f64| Angle::from_slope(sight.slope() + loft).degrees();
-        return Verdict::Refused(Conflict::Pair {
-            lower: binding.lower,
-            upper: binding.upper,
-            gap_deg: angle(lofts.lower) - angle(lofts.upper),
-        });
+        let (lower, upper) = (binding.lower, binding.upper);
+        return Err(Conflict::Pair { lower, upper, gap_deg: angle(lofts.lower) - angle(lofts.upper) });
     }
+    Ok((lofts, binding))
+}
+
+/// The windows that the machine's take-off speeds leave of an interval with the limits that set its ends, ascending.
+pub(crate) fn commanded_windows<'a>(
+    envelope: &'a FlightEnvelope,
+    sight: LineOfSight,
+    lofts: SlopeInterval,
+    binding: Binding,
+    limits: &'a [LimitInterval],
+) -> impl Iterator<Item = SetWindow> + 'a {
+    let speeds = envelope.takeoff_speeds();
+    let command = speeds.limit().and_then(|limit| limits.iter().find(|known| known.limit == limit).copied());
+    let end = move |by: Option<Limit>, otherwise| command.filter(|command| by == Some(command.limit)).unwrap_or(otherwise);
+    speeds.windows(sight, lofts, envelope.gravity_m_s2()).map(move |window| SetWindow {
+        lofts: window.lofts,
+        binding: Binding { lower: end(window.lower, binding.lower), upper: end(window.upper, binding.upper) },
+    })
+}
+
+/// The windows of all limits, or the conflict that leaves none.
+fn evaluate(test: &HopTest, sight: LineOfSight, limits: &[LimitInterval]) -> Verdict {
+    let (lofts, binding) = match joint(sight, limits) {
+        Ok(joint) => joint,
+        Err(conflict) => return Verdict::Refused(conflict),
+    };
     // The machine's take-off speeds are the last of the limits: they cut the interval of the others.
-    let command = limits.iter().find(|limit| Some(limit.limit) == commanded).copied();
-    let end = |by: Option<Limit>, otherwise| command.filter(|command| by == Some(command.limit)).unwrap_or(otherwise);
-    let windows: Vec<_> = test
-        .windows(sight, lofts)
-        .map(|window| SetWindow {
-            lofts: window.lofts,
-            binding: Binding { lower: end(window.lower, binding.lower), upper: end(window.upper, binding.upper) },
-        })
-        .collect();
-    match command {
-        Some(command) if windows.is_empty() => Verdict::Refused(Conflict::of_commands(test, sight, lofts, binding, command)),
+    let windows: Vec<_> = commanded_windows(test.envelope(), sight, lofts, binding, limits).collect();
+    match limits.iter().find(|limit| Some(limit.limit) == test.takeoff_speeds().limit()) {
+        Some(command) if windows.is_empty() => {
+            Verdict::Refused(Conflict::of_commands(test.envelope(), sight, lofts, binding, *command))
+        }
         _ => Verdict::Feasible(lofts, windows),
     }
 }

@@ -25,6 +25,10 @@ id! {
     SegmentId
 }
 id! {
+    /// A triangle of a mesh, counted from 0 in the order of the mesh.
+    FacetId
+}
+id! {
     /// A node of the hop graph, counted from 0 in the direction of +x.
     NodeId
 }

@@ -19,7 +19,7 @@ mod unit;
 pub use angle::{Angle, AngleInterval};
 pub(crate) use format::excerpt;
 pub use format::{format_number, unit_of};
-pub use ids::{NodeId, SegmentId, VertexId};
+pub use ids::{FacetId, NodeId, SegmentId, VertexId};
 #[cfg(test)]
 pub(crate) use interval::Inwards;
 pub use interval::{Interval, Outwards, Rounding};

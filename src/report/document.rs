@@ -11,6 +11,8 @@ use crate::terrain::MapProjection;
 pub enum DocumentKind {
     /// One hop: [`HopAnswer`](super::HopAnswer).
     Hop,
+    /// One hop over a mesh: [`MeshHopAnswer`](super::MeshHopAnswer).
+    HopMesh,
     /// Whether a path exists: [`CheckAnswer`](super::CheckAnswer).
     Check,
     /// The same for several pairs of ends: [`PairsAnswer`](super::PairsAnswer).
@@ -39,8 +41,9 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Hop,
+        Self::HopMesh,
         Self::Check,
         Self::CheckPairs,
         Self::Plan,
@@ -59,6 +62,7 @@ impl DocumentKind {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Hop => "hop",
+            Self::HopMesh => "hop-mesh",
             Self::Check => "check",
             Self::CheckPairs => "check-pairs",
             Self::Plan => "plan",

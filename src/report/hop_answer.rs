@@ -316,39 +316,33 @@ impl BindingRecord {
 
     /// The record of a conflict.
     pub fn of_conflict(test: &HopTest, conflict: &Conflict) -> Self {
+        Self::of_conflict_at(conflict, |limit| limit.vertex.map(|vertex| VertexRecord::new(test, vertex)))
+    }
+
+    /// The same with the vertex of a limit found by the caller.
+    pub(super) fn of_conflict_at(conflict: &Conflict, vertex_of: impl Fn(&LimitInterval) -> Option<VertexRecord>) -> Self {
         let sentence = conflict.to_string();
-        match conflict {
+        let (names, gap_deg, gap_m_s, at) = match conflict {
             Conflict::Alone(alone) => {
                 let (gap_deg, gap_m_s) = match alone.shortfall {
                     Some(Shortfall::Ground { refusal, .. }) => (refusal.excess_deg(), None),
                     Some(Shortfall::Speed { needed_m_s, limit_m_s }) => (None, Some(needed_m_s - limit_m_s)),
                     Some(Shortfall::Height { .. } | Shortfall::Bend { .. }) | None => (None, None),
                 };
-                let vertex = alone.vertex.map(|vertex| VertexRecord::new(test, vertex));
-                Self::Conflict { conflict: vec![alone.limit], gap_deg, gap_m_s, vertex, clearance_x_m: alone.kink_x_m, sentence }
+                (vec![alone.limit], gap_deg, gap_m_s, alone)
             }
-            Conflict::Pair { lower, upper, gap_deg } => Self::Conflict {
-                conflict: vec![lower.limit, upper.limit],
-                gap_deg: Some(*gap_deg),
-                gap_m_s: None,
-                vertex: lower.vertex.map(|vertex| VertexRecord::new(test, vertex)),
-                clearance_x_m: lower.kink_x_m,
-                sentence,
-            },
-            Conflict::Commands { limit, other, left_m_s: [least, greatest], nearest_m_s } => Self::Conflict {
-                conflict: vec![*limit, other.limit],
-                gap_deg: None,
-                gap_m_s: Some((least - nearest_m_s).max(nearest_m_s - greatest)),
-                vertex: other.vertex.map(|vertex| VertexRecord::new(test, vertex)),
-                clearance_x_m: other.kink_x_m,
-                sentence,
-            },
-        }
+            Conflict::Pair { lower, upper, gap_deg } => (vec![lower.limit, upper.limit], Some(*gap_deg), None, lower),
+            Conflict::Commands { limit, other, left_m_s: [least, greatest], nearest_m_s } => {
+                (vec![*limit, other.limit], None, Some((least - nearest_m_s).max(nearest_m_s - greatest)), other)
+            }
+        };
+        Self::Conflict { conflict: names, gap_deg, gap_m_s, vertex: vertex_of(at), clearance_x_m: at.kink_x_m, sentence }
     }
 }
 
 impl BestRecord {
-    fn new(arc: &Arc, choice: TakeoffChoice, limits: &HopperLimits) -> Self {
+    /// The hop of an arc.
+    pub(super) fn new(arc: &Arc, choice: TakeoffChoice, limits: &HopperLimits) -> Self {
         Self {
             choice,
             takeoff_angle_deg: arc.takeoff_angle().degrees(),

@@ -14,6 +14,7 @@ pub mod landings;
 mod limit_counts;
 mod limit_pair;
 mod map_answer;
+mod mesh_hop_answer;
 mod objective_record;
 mod path_record;
 mod plan_answer;
@@ -52,6 +53,10 @@ pub use limit_pair::LimitPair;
 pub use map_answer::{
     GoalRecord, MapAnswer, MapBudgetRecord, MapEffortRecord, MapObjectiveRecord, MapSummary, MobilityRecord, ReturnRecord,
     StartRecord,
+};
+pub use mesh_hop_answer::{
+    MeshBindingRecord, MeshBlockedRecord, MeshContactRecord, MeshFacetRecord, MeshHopAnswer, MeshLimitRecord, MeshWindowEndRecord,
+    MeshWindowRecord, mesh_hop_text,
 };
 pub use objective_record::{AmountRecord, BudgetRecord, ObjectiveRecord};
 pub use path_record::{

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::{
-    BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ObjectiveRecord, ProofRecord, RequireAnswer,
-    RequireBudgetsRecord, RequireSuccessRecord, SuccessTry, TotalsRecord, WindowRecord,
+    BestRecord, BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ObjectiveRecord, ProofRecord,
+    RequireAnswer, RequireBudgetsRecord, RequireSuccessRecord, SuccessTry, TotalsRecord, WindowRecord,
     limit_counts::LimitCounts,
     propellant_record::{delta_v_field, stores_lines},
 };
@@ -31,7 +31,7 @@ impl Sheet {
 }
 
 /// An x along the chain to the millimetre, without trailing zeros.
-fn place(x_m: f64) -> String {
+pub(super) fn place(x_m: f64) -> String {
     let text = format!("{x_m:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
@@ -81,25 +81,7 @@ pub fn hop_text(answer: &HopAnswer) -> String {
         let gap = limit.refused_deg.map(|[from, to]| format!("  but not between {from:.6} and {to:.6} deg")).unwrap_or_default();
         sheet.line(format_args!("{:<wide$}{ends}{gap}{vertex}{refusal}", limit.name));
     }
-    if let Some(best) = answer.best {
-        sheet.line(format_args!(
-            "\n{:<18}{:>10}{:>10}{:>11}{:>10}{:>10}{:>13}",
-            "to fly", "up (deg)", "m/s", "down (deg)", "m/s", "s", "highest (m)"
-        ));
-        for choice in &answer.choices {
-            let chosen = if choice.choice == best.choice { "  <- chosen" } else { "" };
-            sheet.line(format_args!(
-                "{:<18}{:>10.4}{:>10.4}{:>11.4}{:>10.4}{:>10.3}{:>13.3}{chosen}",
-                choice.choice,
-                choice.takeoff_angle_deg,
-                choice.takeoff_speed_m_s,
-                choice.landing_angle_deg,
-                choice.landing_speed_m_s,
-                choice.flight_time_s,
-                choice.apex_height_m
-            ));
-        }
-    }
+    choice_lines(&mut sheet, answer.best, &answer.choices);
     if let Some(margins) = answer.margins {
         sheet.line(format_args!("\nmargins of the chosen hop"));
         for line in margins.lines() {
@@ -138,6 +120,28 @@ pub fn hop_text(answer: &HopAnswer) -> String {
         ));
     }
     sheet.0
+}
+
+/// The hops of all choices, with the chosen one marked.
+pub(super) fn choice_lines(sheet: &mut Sheet, best: Option<BestRecord>, choices: &[BestRecord]) {
+    let Some(best) = best else { return };
+    sheet.line(format_args!(
+        "\n{:<18}{:>10}{:>10}{:>11}{:>10}{:>10}{:>13}",
+        "to fly", "up (deg)", "m/s", "down (deg)", "m/s", "s", "highest (m)"
+    ));
+    for choice in choices {
+        let chosen = if choice.choice == best.choice { "  <- chosen" } else { "" };
+        sheet.line(format_args!(
+            "{:<18}{:>10.4}{:>10.4}{:>11.4}{:>10.4}{:>10.3}{:>13.3}{chosen}",
+            choice.choice,
+            choice.takeoff_angle_deg,
+            choice.takeoff_speed_m_s,
+            choice.landing_angle_deg,
+            choice.landing_speed_m_s,
+            choice.flight_time_s,
+            choice.apex_height_m
+        ));
+    }
 }
 
 /// One of several windows in one line.

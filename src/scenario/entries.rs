@@ -273,6 +273,11 @@ impl Entries {
         self.given.get(&(table.to_owned(), name.to_owned())).map(|entry| &entry.value)
     }
 
+    /// Metres per unit of the mesh that the keys name: 1 unless they say otherwise.
+    pub fn mesh_scale(&self) -> f64 {
+        self.number("terrain", "mesh_scale").unwrap_or(1.0)
+    }
+
     /// A number; `None` if it was not given.
     pub(super) fn number(&self, table: &str, name: &str) -> Option<f64> {
         self.value(table, name).and_then(number)

@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 
 use crate::{
     report::{
-        CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, PairsAnswer,
-        PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
+        CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshHopAnswer,
+        PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
     },
     scenario::scenario_schema,
 };
@@ -48,6 +48,7 @@ impl SchemaKind {
 fn answer_schema(kind: DocumentKind) -> Value {
     let mut schema = match kind {
         DocumentKind::Hop => derived::<HopAnswer>(),
+        DocumentKind::HopMesh => derived::<MeshHopAnswer>(),
         DocumentKind::Check => derived::<CheckAnswer>(),
         DocumentKind::CheckPairs => derived::<PairsAnswer>(),
         DocumentKind::Plan | DocumentKind::Run => derived::<PlanAnswer>(),

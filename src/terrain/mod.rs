@@ -60,8 +60,8 @@ pub use georeference::{CoordinateSystem, DegreesMend, GeoReference, MapBounds, T
 pub use geotiff::{Band, ResultBands, geotiff_bytes, read_geotiff_bytes, result_geotiff_bytes, write_geotiff};
 pub use lattice::PostLattice;
 pub use mesh::{
-    Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, WALL_RUN_M, Wall, looks_like_mesh, read_mesh, read_mesh_bytes,
-    read_mesh_with, slice_mesh,
+    Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, MeshTree, NearestOnMesh, VerticalPlane, WALL_RUN_M, Wall,
+    looks_like_mesh, read_mesh, read_mesh_bytes, read_mesh_with, slice_mesh,
 };
 pub(crate) use mesh::{binary_stl_length, format_name as mesh_format};
 pub use no_data::{InvalidNoData, NoData, NoDataRule};

@@ -320,7 +320,12 @@ const MAP: [Trial; 30] = [
     ),
 ];
 
-const HOP: [Trial; 11] = [
+const HOP: [Trial; 12] = [
+    (
+        "--plot",
+        &["hop", "plate.obj", "--from", "1,1,0", "--to", "3,3,0", "--scenario", "map.toml"],
+        &["hop", "plate.obj", "--from", "1,1,0", "--to", "3,3,0", "--scenario", "map.toml", "--plot", "hop.svg"],
+    ),
     ("--trajectory", &["hop", "scenario.toml", "--to", "10"], &["hop", "scenario.toml", "--to", "10", "--trajectory", "t.csv"]),
     (
         "--step-s",
@@ -1263,13 +1268,9 @@ fn a_position_with_too_many_numbers_is_refused_with_what_each_terrain_takes() {
         for (option, (text, count)) in options.iter().flat_map(|option| [("1,2", 2), ("-1,2,3", 3)].map(|of| (option, of))) {
             let ran = desk.run(&[&[command, "scenario.toml", option, text], more].concat());
             let sentence = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
-            // Two numbers may be a position on a map, until the terrain is known.
-            let numbers = match count {
-                3 => "one or two numbers in metres",
-                _ => "one number in metres, X, such as 12.5",
-            };
             let expected = format!(
-                "found `{text}` ({count} numbers), expected {numbers}: a position is X along a chain, X,Y on a map and X,Y,Z on a mesh"
+                "found `{text}` ({count} numbers), expected one number in metres, X, such as 12.5: a position is X along a chain, X,Y on a \
+                 map and X,Y,Z on a mesh"
             );
             assert!(ran.status == 2 && sentence.contains(&expected) && sentence.contains(option), "{command} {option}: {ran:?}");
         }

@@ -6,7 +6,7 @@ use std::{collections::BTreeSet, path::Path, sync::OnceLock};
 
 use chta::report::{
     CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
-    PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
+    MeshHopAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
 use serde::{Serialize, de::DeserializeOwned};
@@ -24,6 +24,8 @@ const COMMANDS: [&str; 45] = [
     "hop data/scenarios/lunar_hopper.toml --from 0 --to 5",
     "hop data/chains/rolling_100.csv --from 3 --to 9.5 --scenario data/scenarios/rolling_surely.toml --set hopper.clearance_m=0.3",
     "hop data/chains/rolling_100.csv --from 3 --to 9.5 --scenario data/scenarios/rolling_surely.toml --set hopper.takeoff_speed_min_m_s=3",
+    "hop data/mesh/simple.obj --from 2,0,2 --to 10,0,2 --scenario data/scenarios/simple_mesh.toml",
+    "hop data/mesh/simple.obj --from 2,0,2 --to 10,0,2 --scenario data/scenarios/simple_mesh.toml --set hopper.takeoff_speed_max_m_s=1",
     "check data/scenarios/paper_76m.toml",
     "check data/scenarios/paper_76m.toml --prove",
     "check data/scenarios/wall.toml --prove",
@@ -112,6 +114,7 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
     }
     match kind {
         DocumentKind::Hop => of::<HopAnswer>(text),
+        DocumentKind::HopMesh => of::<MeshHopAnswer>(text),
         DocumentKind::Check => of::<CheckAnswer>(text),
         DocumentKind::CheckPairs => of::<PairsAnswer>(text),
         DocumentKind::Plan | DocumentKind::Run => of::<PlanAnswer>(text),

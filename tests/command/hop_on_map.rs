@@ -132,10 +132,10 @@ fn what_is_no_hop_on_a_map_is_refused_with_what_is_expected() {
             &["hop", "ground.tif", "--from", "3,4", "--to", "5,6", "--body", "mars"],
             &["found no hopper.takeoff_speed_max_m_s", "--set"],
         ),
-        (&["hop", "map.toml", "--from", "3,4,5"], &["(3 numbers), expected one or two numbers in metres", counts]),
+        (&["hop", "map.toml", "--from", "3,4,5"], &["(3 numbers), expected two finite numbers in metres", counts]),
         (
             &["hop", "plate.obj", "--from", "3,4", "--to", "5,6"],
-            &["plate.obj: this is", "expected a chain CSV, an elevation raster"],
+            &["--from: found `3,4` (2 numbers), expected three finite numbers in metres, X,Y,Z", counts, "plate.obj is a mesh"],
         ),
     ] {
         let ran = desk.run(args);

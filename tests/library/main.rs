@@ -45,6 +45,7 @@ mod map_world;
 mod margins;
 mod mended;
 mod mesh_slices;
+mod mesh_windows;
 mod mutations;
 mod mutations_chain_csv;
 mod mutations_mesh;

@@ -4,6 +4,7 @@
 //! that the limit alone refuses every arc.
 
 mod apex;
+mod blocked;
 mod commanded;
 mod cones;
 mod flight_time;
@@ -11,6 +12,7 @@ mod speed;
 mod terrain;
 
 pub use apex::apex_height;
+pub use blocked::blocked_lofts;
 pub use commanded::{takeoff_speed_level, takeoff_speed_min};
 pub use cones::{landing_cone, takeoff_cone};
 pub use flight_time::flight_time;

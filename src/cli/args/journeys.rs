@@ -58,15 +58,18 @@ pub(crate) struct RunArgs {
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta hop data/scenarios/paper_76m.toml --from 0 --to 20 --format json")]
 pub(crate) struct HopArgs {
-    /// Chain (CSV), elevation raster, scenario (TOML) or result (JSON); -: standard input
+    /// Chain (CSV), elevation raster, mesh (OBJ, STL, PLY), scenario (TOML) or result (JSON); -: standard input
     #[arg(value_name = "TERRAIN")]
     pub(crate) terrain: PathBuf,
-    /// Where the hop takes off, m: X along a chain, X,Y on a map [default: the scenario's start]
-    #[arg(long, value_name = "X[,Y]", value_parser = position, allow_hyphen_values = true)]
+    /// Where the hop takes off, m: X along a chain, X,Y on a map, X,Y,Z on a mesh [default: the scenario's start]
+    #[arg(long, value_name = "X[,Y[,Z]]", value_parser = position, allow_hyphen_values = true)]
     pub(crate) from: Option<Position>,
-    /// Where it lands, m: X along a chain, X,Y on a map [default: the scenario's goal]
-    #[arg(long, value_name = "X[,Y]", value_parser = position, allow_hyphen_values = true)]
+    /// Where it lands, m: X along a chain, X,Y on a map, X,Y,Z on a mesh [default: the scenario's goal]
+    #[arg(long, value_name = "X[,Y[,Z]]", value_parser = position, allow_hyphen_values = true)]
     pub(crate) to: Option<Position>,
+    /// Picture (SVG or PNG) to write of a hop over a mesh: the cut of its plane, the feasible arcs and those that facets block
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) trajectory: TrajectoryArgs,
     /// How the answer is written to standard output

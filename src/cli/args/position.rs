@@ -17,6 +17,8 @@ pub(crate) enum Position {
     Along(f64),
     /// X,Y on a map, m.
     OnMap(MapPoint),
+    /// X,Y,Z on a mesh, m.
+    InSpace([f64; 3]),
 }
 
 /// What is expected where one number is.
@@ -25,14 +27,23 @@ const ONE: &str = "one number in metres, X, such as 12.5";
 /// What is expected where two numbers are.
 const TWO: &str = "two finite numbers in metres, X,Y, such as 12.5,-30";
 
+/// What is expected where three numbers are.
+const THREE: &str = "three finite numbers in metres, X,Y,Z, such as 12.5,-30,4";
+
 impl Position {
-    /// The sentence where the terrain takes the other form.
-    pub(crate) fn misfit(self) -> String {
-        let expected = match self {
-            Self::Along(_) => TWO,
-            Self::OnMap(_) => ONE,
-        };
-        format!("{}, expected {expected}: {COUNTS}", self.found())
+    /// The sentence where the terrain is a chain.
+    pub(crate) fn misfit_along_chain(self) -> String {
+        format!("{}, expected {ONE}: {COUNTS}", self.found())
+    }
+
+    /// The sentence where the terrain is a map.
+    pub(crate) fn misfit_on_map(self) -> String {
+        format!("{}, expected {TWO}: {COUNTS}", self.found())
+    }
+
+    /// The sentence where the terrain is a mesh.
+    pub(crate) fn misfit_in_space(self) -> String {
+        format!("{}, expected {THREE}: {COUNTS}", self.found())
     }
 
     /// What was found, for a sentence.
@@ -40,16 +51,18 @@ impl Position {
         match self {
             Self::Along(x_m) => format!("found `{x_m}` (1 number)"),
             Self::OnMap(at) => format!("found `{},{}` (2 numbers)", at.x, at.y),
+            Self::InSpace([x, y, z]) => format!("found `{x},{y},{z}` (3 numbers)"),
         }
     }
 }
 
-/// Reads `X` along a chain, or `X,Y` on a map.
+/// Reads `X` along a chain, `X,Y` on a map, or `X,Y,Z` on a mesh.
 pub(super) fn position(text: &str) -> Result<Position, String> {
     match text.split(',').count() {
         1 => along_chain(text).map(Position::Along),
         2 => map_point(text).map(Position::OnMap),
-        count => Err(format!("found `{text}` ({count} numbers), expected one or two numbers in metres: {COUNTS}")),
+        3 => numbers(text, THREE, f64::is_finite).map(Position::InSpace),
+        count => Err(format!("found `{text}` ({count} numbers), expected one to three numbers in metres: {COUNTS}")),
     }
 }
 
@@ -103,11 +116,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_position_has_one_number_or_two() {
+    fn a_position_has_one_to_three_numbers() {
         assert_eq!(position("-3.5"), Ok(Position::Along(-3.5)));
         assert_eq!(position("-3.5, 2"), Ok(Position::OnMap(MapPoint::new(-3.5, 2.0))));
+        assert_eq!(position("-3.5, 2,1e1"), Ok(Position::InSpace([-3.5, 2.0, 10.0])));
         for (text, said) in [
-            ("1,2,3", "(3 numbers), expected one or two numbers in metres: a position is X along a chain, X,Y on a map"),
+            ("1,2,3,4", "(4 numbers), expected one to three numbers in metres: a position is X along a chain, X,Y on a map"),
+            ("1,2,inf", "expected three finite numbers in metres, X,Y,Z"),
             ("a", "expected one number in metres, X"),
             ("1,b", "expected two finite numbers in metres, X,Y"),
             ("1,inf", "expected two finite numbers in metres, X,Y"),

@@ -45,7 +45,8 @@ impl EndOptions {
                     entries.forget("terrain", &format!("{name}_lonlat_deg"));
                     entries.set_by_option(&option, "terrain", &format!("{name}_m"), vec![at.x, at.y].into());
                 }
-                None => {}
+                // Refused, or read by the command itself.
+                Some(Position::InSpace(_)) | None => {}
             }
             if on_map {
                 entries.forget("terrain", &format!("{name}_x_m"));
@@ -62,11 +63,14 @@ impl EndOptions {
         for (end, at) in [End::Start, End::Goal].into_iter().zip(self.at) {
             let option = self.place(end);
             match at {
-                Some(at @ Position::Along(_)) if on_raster => {
-                    return Err(Failure::message(format!("{option}: {}; {name} is an elevation raster", at.misfit())));
+                Some(at @ (Position::Along(_) | Position::InSpace(_))) if on_raster => {
+                    return Err(Failure::message(format!("{option}: {}; {name} is an elevation raster", at.misfit_on_map())));
                 }
-                Some(at @ Position::OnMap(_)) if on_chain => {
-                    return Err(Failure::message(format!("{option}: {}; {name} is a chain", at.misfit())));
+                Some(at @ (Position::OnMap(_) | Position::InSpace(_))) if on_chain => {
+                    return Err(Failure::message(format!("{option}: {}; {name} is a chain", at.misfit_along_chain())));
+                }
+                Some(at @ Position::InSpace(_)) => {
+                    return Err(Failure::message(format!("{option}: {}; {name} is taken along its transect", at.misfit_on_map())));
                 }
                 None if on_raster => {
                     let (end, option) = (end.name(), self.names.map_or("", |names| names[end as usize]));
@@ -88,6 +92,28 @@ impl EndOptions {
             ))),
             _ => Ok(()),
         }
+    }
+
+    /// Whether one of the two is a position in space.
+    pub(super) fn are_in_space(&self) -> bool {
+        self.at.iter().any(|at| matches!(at, Some(Position::InSpace(_))))
+    }
+
+    /// The ends of a hop over a mesh.
+    pub(super) fn in_space(&self, mesh: &Path) -> Result<[[f64; 3]; 2], Failure> {
+        let name = mesh.display();
+        let of_end = |end: End| {
+            let option = self.names.map_or("", |names| names[end as usize]);
+            match self.at[end as usize] {
+                Some(Position::InSpace(at)) => Ok(at),
+                Some(other) => Err(Failure::message(format!("{option}: {}; {name} is a mesh", other.misfit_in_space()))),
+                None => Err(Failure::message(format!(
+                    "{name}: found no {}, expected {option} X,Y,Z: a position near the surface of the mesh, in metres",
+                    end.name()
+                ))),
+            }
+        };
+        Ok([of_end(End::Start)?, of_end(End::Goal)?])
     }
 
     /// The source of an end's value.

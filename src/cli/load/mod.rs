@@ -1,6 +1,7 @@
 //! From the command line to a scenario and its chain.
 
 mod ends;
+mod mesh_hop;
 mod names;
 mod result;
 mod vary;
@@ -25,6 +26,7 @@ use chta::{
 use serde::Serialize;
 
 pub(crate) use ends::EndOptions;
+pub(crate) use mesh_hop::{MeshHopInput, load_mesh_hop};
 pub(crate) use names::relative_name;
 pub(crate) use result::plan_to_fly;
 pub(crate) use vary::load_to_vary;
@@ -294,7 +296,7 @@ fn validate_and_prepare(
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
     let lacking = scenario.lacks_on_a_dem();
     if *kind == TargetKind::Raster && !lacking.is_empty() {
-        return Err(Failure::message(lacking_on_a_dem(&lacking)));
+        return Err(Failure::message(lacking_on(&lacking, "a DEM")));
     }
     let mut terrain = scenario.terrain.clone().ok_or_else(|| {
         let name = input.given.display();
@@ -458,7 +460,7 @@ fn of_source(
     let lacking = scenario.lacks_on_a_dem();
     if !lacking.is_empty() {
         let name = common.scenario.as_ref().map(|file| format!("{}: ", file.display())).unwrap_or_default();
-        return Err(Failure::message(name + &lacking_on_a_dem(&lacking)));
+        return Err(Failure::message(name + &lacking_on(&lacking, "a DEM")));
     }
     let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
     verbose::settings(&document, &scenario.search);
@@ -481,8 +483,8 @@ fn own_ends(source: &Source, wanted: ScenarioEnds) -> Result<Option<[MapPlace; 2
     Ok(scenario.terrain.and_then(|terrain| terrain.map_ends()))
 }
 
-/// The failure for keys that hops over a DEM need, with how to give them.
-fn lacking_on_a_dem(keys: &[LackingKey]) -> String {
+/// The failure for keys that hops over a terrain without columns need, with how to give them.
+fn lacking_on(keys: &[LackingKey], terrain: &str) -> String {
     let name = |LackingKey { key, instead, .. }: &LackingKey| match instead {
         [] => (*key).to_owned(),
         instead => format!("{key} (or {})", instead.join(" and ")),
@@ -490,7 +492,7 @@ fn lacking_on_a_dem(keys: &[LackingKey]) -> String {
     let names: Vec<_> = keys.iter().map(name).collect();
     let sets: Vec<_> = keys.iter().map(|LackingKey { key, example, .. }| format!("--set {key}={example}")).collect();
     format!(
-        "found no {}, expected in the scenario, since a DEM has no columns for it: add it to the file of --scenario, or give, for \
+        "found no {}, expected in the scenario, since {terrain} has no columns for it: add it to the file of --scenario, or give, for \
          example, {}",
         names.join(", no "),
         sets.join(" ")

@@ -587,6 +587,8 @@ fn refusal_measure(refusal: GroundRefusal) -> Option<Measure> {
         | GroundRefusal::KeepOut
         | GroundRefusal::SpeedZero
         | GroundRefusal::NothingAhead { .. }
+        | GroundRefusal::FacesDown { .. }
+        | GroundRefusal::FacetsDisagree { .. }
         // The checker fits the ground under a footprint itself.
         | GroundRefusal::Footprint(_) => None,
     }

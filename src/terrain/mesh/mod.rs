@@ -16,6 +16,7 @@
 //! # Ok::<(), chta::terrain::TerrainError>(())
 //! ```
 
+mod bodies;
 mod build;
 mod ears;
 mod format;
@@ -25,9 +26,11 @@ mod ply;
 mod slice;
 mod stl;
 mod text;
+mod tree;
 mod voids;
 
 pub use format::{MESH_FORMATS, MeshFile, looks_like_mesh, read_mesh, read_mesh_bytes, read_mesh_with};
 pub(crate) use format::{binary_stl_length, format_name};
 pub use model::{Mesh, MeshBounds};
 pub use slice::{Layers, MeshSlice, WALL_RUN_M, Wall, slice_mesh};
+pub use tree::{MeshTree, NearestOnMesh, VerticalPlane};

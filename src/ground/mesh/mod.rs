@@ -1,0 +1,249 @@
+//! A mesh as a ground: caves, overhangs and ceilings, with the exact set of collision-free arcs between two contacts.
+//!
+//! ```text
+//!          ______ ceiling          The vertical plane of the hop cuts the mesh in segments. Through every point of the plane between
+//!       . - ^ - .                  the contacts passes exactly one arc, so a segment blocks one interval of lofts, in closed form
+//!     .' ~~~~~~~ '.                ([`blocked_lofts`](crate::ballistics::limits::blocked_lofts)). What all other limits allow, less
+//!    /  .-'^|^'-.  \               the union of these intervals, are the windows: none is missed, and each end has its facet.
+//!   t_.'____|____'._l  ground
+//! ```
+//!
+//! Facets are obstacles on both sides. Their outer side, from the order of their corners, matters where a contact is: a hop leaves and
+//! arrives on that side. Where several facets meet at a contact, the strictest rules.
+//!
+//! Source: Campana and Laumond 2016, *Ballistic motion planning*, who sample angles of the arcs and check them one by one; the windows
+//! are the closed form of what they sample.
+
+mod blocked;
+mod contact;
+mod takeoff_set;
+
+pub use blocked::BlockedSpan;
+pub use contact::{MeshContact, MeshContactFacet, NoMeshContact};
+pub use takeoff_set::{MeshConflict, MeshTakeoffSet, MeshWindow, MeshWindowEnd};
+
+use std::{ops::ControlFlow, sync::Arc};
+
+use nalgebra::Vector2;
+
+use crate::{
+    ballistics::{ContactLimits, FlightEnvelope, LineOfSight, limits::blocked_lofts},
+    chain::{ConstraintProblem, FacetGround, GroundRefusal, facet_constraints},
+    quantity::{Angle, AngleInterval, ChainPoint, FacetId, SlopeInterval},
+    terrain::{MeshTree, VerticalPlane},
+    world::{Contact, Direction, Gravity, Hopper, SurfaceProperties},
+};
+use blocked::BlockedLofts;
+
+/// A mesh with the hopper, gravity and the surface: all that a hop between two of its points depends on. A clone shares the mesh.
+#[derive(Clone, Debug)]
+pub struct MeshGround {
+    tree: Arc<MeshTree>,
+    envelope: FlightEnvelope,
+    surface: SurfaceProperties,
+}
+
+/// The course of a hop between two contacts of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshCourse {
+    /// The plane of the hop, with its origin in the take-off.
+    pub plane: VerticalPlane,
+    /// The line of sight in that plane.
+    pub sight: LineOfSight,
+}
+
+/// Buffers of the windows of one hop after another.
+#[derive(Clone, Debug, Default)]
+pub struct MeshBuffers {
+    blocked: BlockedLofts,
+    free: Vec<SlopeInterval>,
+}
+
+impl MeshGround {
+    /// The ground of a mesh for a hopper and gravity.
+    ///
+    /// # Errors
+    /// [`ConstraintProblem`], where the surface states no grip, or the hopper no speeds.
+    pub fn new(
+        tree: impl Into<Arc<MeshTree>>,
+        hopper: &Hopper,
+        gravity: Gravity,
+        surface: &SurfaceProperties,
+    ) -> Result<Self, ConstraintProblem> {
+        surface.check()?;
+        let level = nalgebra::Vector3::z();
+        facet_constraints(level, Vector2::x(), FacetGround::default(), hopper, gravity, surface)?;
+        Ok(Self { tree: tree.into(), envelope: FlightEnvelope::new(hopper, gravity), surface: *surface })
+    }
+
+    /// The mesh.
+    pub fn tree(&self) -> &MeshTree {
+        &self.tree
+    }
+
+    /// The flight envelope of the hopper under its gravity.
+    pub const fn envelope(&self) -> &FlightEnvelope {
+        &self.envelope
+    }
+
+    /// The course from one contact to another; `None` where one is right over the other: a vertical hop has no plane.
+    pub fn course(&self, takeoff: &MeshContact, landing: &MeshContact) -> Option<MeshCourse> {
+        let away = landing.point_m() - takeoff.point_m();
+        let run_m = libm::hypot(away.x, away.y);
+        if run_m <= self.tree.resolution_m() {
+            return None;
+        }
+        let heading = away.xy() / run_m;
+        // The slope of a facet has more digits than the difference of two heights on it.
+        let shared = takeoff.facets().iter().find(|facet| facet.normal.z > 0.0 && landing.touches(facet.id));
+        let sight = match shared {
+            Some(facet) => LineOfSight::along(run_m, (-facet.normal.xy() / facet.normal.z).dot(&heading)),
+            None => LineOfSight::new(run_m, away.z),
+        };
+        Some(MeshCourse { plane: VerticalPlane { origin: takeoff.point_m(), heading }, sight })
+    }
+
+    /// What the facets at a contact allow for a direction of travel: the strictest of each limit.
+    ///
+    /// # Errors
+    /// Why they refuse every hop, and the facet that does.
+    pub fn allowed(
+        &self,
+        contact: &MeshContact,
+        heading: Vector2<f64>,
+        kind: Contact,
+    ) -> Result<ContactLimits, (GroundRefusal, FacetId)> {
+        let mut least = ContactLimits { slopes: SlopeInterval::ALL, speed_max_m_s: f64::INFINITY };
+        let mut last = FacetId(0);
+        for facet in contact.facets() {
+            last = facet.id;
+            let (hopper, gravity) = (self.envelope.hopper(), self.envelope.gravity());
+            let constraints = facet_constraints(facet.normal, heading, FacetGround::default(), hopper, gravity, &self.surface)
+                .map_err(|_| (GroundRefusal::NoGround, facet.id))?;
+            let rule = constraints.check_contact(kind, Direction::Forward).map_err(|refusal| (refusal, facet.id))?;
+            least.slopes = least.slopes.intersect(rule.slopes());
+            least.speed_max_m_s = least.speed_max_m_s.min(rule.speed_max_m_s());
+        }
+        if least.slopes.is_empty() {
+            let [min, max] = [least.slopes.lower, least.slopes.upper].map(Angle::from_slope);
+            let angles = AngleInterval { min, max };
+            return Err((GroundRefusal::FacetsDisagree { angles }, last));
+        }
+        Ok(least)
+    }
+
+    /// The feasible windows of one hop, as lofts over its line of sight, ascending and disjoint; none if no arc is feasible, and `None`
+    /// for a vertical hop.
+    ///
+    /// The limits that need no terrain are tested first; the cut ends as soon as nothing is left.
+    pub fn windows<'a>(
+        &self,
+        takeoff: &MeshContact,
+        landing: &MeshContact,
+        buffers: &'a mut MeshBuffers,
+    ) -> Option<(LineOfSight, &'a [SlopeInterval])> {
+        let course = self.course(takeoff, landing)?;
+        let MeshBuffers { blocked, free } = buffers;
+        free.clear();
+        let heading = course.plane.heading;
+        let (Ok(from), Ok(to)) =
+            (self.allowed(takeoff, heading, Contact::Takeoff), self.allowed(landing, heading, Contact::Landing))
+        else {
+            return Some((course.sight, &[]));
+        };
+        let lofts = self.envelope.lofts(course.sight, from, to);
+        if lofts.is_empty() || lofts.upper <= 0.0 {
+            return Some((course.sight, &[]));
+        }
+        let within = SlopeInterval { lower: lofts.lower.max(0.0), upper: lofts.upper };
+        self.block(&course, [takeoff, landing], within, blocked);
+        let (speeds, gravity) = (self.envelope.takeoff_speeds(), self.envelope.gravity_m_s2());
+        for part in blocked.free_in(within) {
+            free.extend(speeds.windows(course.sight, part.lofts, gravity).map(|window| window.lofts));
+        }
+        Some((course.sight, free))
+    }
+
+    /// Cuts the mesh between two contacts: which lofts of an interval its facets block. The cut ends where they block all.
+    fn block(&self, course: &MeshCourse, ends: [&MeshContact; 2], within: SlopeInterval, blocked: &mut BlockedLofts) {
+        blocked.clear();
+        let shared = std::cell::RefCell::new(blocked);
+        let _ = self.tree.cut(
+            &course.plane,
+            |rectangle| self.may_block(course, rectangle, within, &shared.borrow()),
+            |facet, segment| {
+                let lofts = self.blocked_by(course, ends, facet, segment);
+                let mut blocked = shared.borrow_mut();
+                blocked.insert(lofts, facet);
+                if blocked.covers(within) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            },
+        );
+    }
+
+    /// The lofts that the part of a facet in the plane of a hop blocks.
+    fn blocked_by(
+        &self,
+        course: &MeshCourse,
+        [takeoff, landing]: [&MeshContact; 2],
+        facet: FacetId,
+        segment: [ChainPoint; 2],
+    ) -> SlopeInterval {
+        let (run_m, near_m) = (course.sight.run_m(), self.tree.resolution_m());
+        let over_sight = |point: ChainPoint| ChainPoint::new(point.x_m, point.z_m - course.sight.slope() * point.x_m);
+        let [mut from, mut to] = segment.map(over_sight);
+        if from.x_m > to.x_m {
+            std::mem::swap(&mut from, &mut to);
+        }
+        if to.x_m <= near_m || from.x_m >= run_m - near_m {
+            return SlopeInterval::EMPTY;
+        }
+        let at = |x_m: f64| ChainPoint::new(x_m, from.z_m + (to.z_m - from.z_m) * ((x_m - from.x_m) / (to.x_m - from.x_m)));
+        let [mut begin, mut end] = [from, to];
+        if from.x_m < near_m {
+            begin = if from.x_m < 0.0 { at(0.0) } else { ChainPoint::new(0.0, from.z_m) };
+        }
+        if to.x_m > run_m - near_m {
+            end = if to.x_m > run_m { at(run_m) } else { ChainPoint::new(run_m, to.z_m) };
+        }
+        // A facet that one stands on passes through the contact itself, not beside it by the rounding of a crossing. (The border of one
+        // that lies in the plane as a whole may pass elsewhere.)
+        let steepness = 1.0 + ((to.z_m - from.z_m) / (to.x_m - from.x_m)).abs();
+        let on_contact = |point: ChainPoint| point.z_m.abs() <= near_m * steepness;
+        let left = takeoff.facet(facet).filter(|_| begin.x_m == 0.0 && on_contact(begin));
+        let right = landing.facet(facet).filter(|_| end.x_m == run_m && on_contact(end));
+        if left.is_some() {
+            begin.z_m = 0.0;
+        }
+        if right.is_some() {
+            end.z_m = 0.0;
+        }
+        let mut lofts = blocked_lofts(run_m, [begin, end], self.envelope.clearance());
+        // What starts or ends behind a facet that one stands on flies through the ground.
+        for facet in [left, right].into_iter().flatten() {
+            if facet.normal.z > 0.0 {
+                lofts.lower = f64::NEG_INFINITY;
+            } else if facet.normal.z < 0.0 {
+                lofts.upper = f64::INFINITY;
+            }
+        }
+        lofts
+    }
+
+    /// Whether a part of the mesh within a rectangle of the plane of a hop may block lofts of an interval that are not blocked yet.
+    fn may_block(&self, course: &MeshCourse, [low, high]: [ChainPoint; 2], within: SlopeInterval, blocked: &BlockedLofts) -> bool {
+        let run_m = course.sight.run_m();
+        let (from_m, to_m) = (low.x_m.max(0.0), high.x_m.min(run_m));
+        if from_m > to_m {
+            return false;
+        }
+        let eps_m = self.envelope.clearance().height_m();
+        let edge = |z_m: f64| [from_m, to_m].map(|x_m| ChainPoint::new(x_m, z_m - course.sight.slope() * x_m));
+        let none = crate::ballistics::limits::ClearanceProfile::NONE;
+        let upper = blocked_lofts(run_m, edge(high.z_m + eps_m), none).upper;
+        if upper < within.lower {
+            return false;
+        }
+        let lower = blocked_lofts(run_m, edge(low.z_m - eps_m), none).lower;
+        lower <= within.upper && !blocked.covers(SlopeInterval { lower: lower.max(within.lower), upper: upper.min(within.upper) })
+    }
+}
