@@ -449,16 +449,24 @@ fn a_route_is_drawn_from_above_below_its_profile() {
                 .unwrap_or_default();
             let goal = places.last().copied().unwrap_or(at(70.0, 50.0));
             let nearest = (!found).then_some(at(31.0, 22.0));
-            let view = PlanView { dem: &dem, start: at(5.0, 10.0), goal, path: places.clone(), nearest };
+            let view = PlanView {
+                dem: &dem,
+                start: at(5.0, 10.0),
+                goal,
+                path: places.clone(),
+                nearest,
+                leads_to_goal: nearest.map(|_| at(60.0, 44.0)),
+            };
             let input = FigureInput { plan_view: Some(view), ..input.clone() };
             let plain = draw(&FigureInput { plan_view: None, ..input.clone() }).unwrap();
             let picture = check_picture(&format!("route {found}"), || draw(&input).unwrap());
             assert!(picture.height_mm > plain.height_mm + 40.0, "{} {}", picture.height_mm, plain.height_mm);
             let texts = samples::texts(&picture);
             let words = match found {
-                true => ["path and its landings", "goal, reached", "map y, north (m)", "distance along the route"],
+                true => ["take-off cone", "path and its landings", "goal, reached", "map y, north (m)", "distance along the route"],
                 false => [
                     "reached place nearest to the goal",
+                    "place nearest to the start that leads to the goal",
                     "goal, not reached",
                     "not reached over",
                     "distance along the straight line",

@@ -25,8 +25,7 @@ use crate::{
     quantity::{MapPoint, VertexId},
     report::{CheckAnswer, DeratingRecord, ObjectiveRecord, RouteGapRecord, RouteKind, RouteRecord},
     scenario::{Route, Scenario, TerrainSource},
-    terrain::{Dem, MapPlace},
-    world::Hopper,
+    terrain::MapPlace,
 };
 
 /// Why a free route has no answer.

@@ -275,13 +275,15 @@ impl Planned {
         let geometry = self.case.prepared.chain.geometry();
         let start = geometry.map_point(&self.ends.0)?;
         let landings = self.path.iter().flat_map(|path| &path.hops).filter_map(|hop| hop.landing.map());
-        let [x_m, y_m, _] = self.answer.check.route.as_ref()?.nearest_m;
+        let route = self.answer.check.route.as_ref()?;
+        let at = |[x_m, y_m, _]: [f64; 3]| MapPoint::new(x_m, y_m);
         Some(PlanView {
             dem: ground.terrain().dem(),
             start,
             goal: geometry.map_point(&self.ends.1)?,
             path: self.path.iter().map(|_| start).chain(landings).collect(),
-            nearest: self.path.is_none().then(|| MapPoint::new(x_m, y_m)),
+            nearest: self.path.is_none().then(|| at(route.nearest_m)),
+            leads_to_goal: route.gap.as_ref().map(|gap| at(gap.leads_to_goal_from_m)),
         })
     }
 

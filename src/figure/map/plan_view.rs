@@ -5,7 +5,7 @@ use plotters::style::RGBColor;
 use super::{
     super::{
         keys::{self, Swatch},
-        palette::{BLACK, ORANGE, SMALL_MM, WHITE},
+        palette::{BLACK, ORANGE, SKY, SMALL_MM, WHITE},
         picture::paragraph,
         sheet::{Place, Sheet},
     },
@@ -37,27 +37,36 @@ pub struct PlanView<'a> {
     pub path: Vec<MapPoint>,
     /// Without a path: the place nearest to the goal that was reached.
     pub nearest: Option<MapPoint>,
+    /// Without a path: the place nearest to the start from which the goal can be reached.
+    pub leads_to_goal: Option<MapPoint>,
 }
 
 /// Draws a plan view below a height of a sheet: the path over a hillshade of the ground around it. Returns where it ends.
 pub(in super::super) fn draw_plan_view(sheet: &mut Sheet, view: &PlanView<'_>, top_mm: f64) -> f64 {
-    let places = view.path.iter().copied().chain([view.start, view.goal]).chain(view.nearest);
+    let places = view.path.iter().copied().chain([view.start, view.goal]).chain(view.nearest).chain(view.leads_to_goal);
     let window = Window::around(view.dem, places);
     let pixels = raster::draw(view.dem, &window, &[GROUND], |_, _| Some((0, Pattern::Plain)));
     let map = MapPanel::at_most(view.dem, &window, top_mm, TALL_MM);
     let end_mm = map.draw(sheet, pixels);
     let paths = [view.path.clone()];
     map.paths(sheet, &paths);
-    let nearest = view.nearest.filter(|at| *at != view.start && map.shows(*at));
-    if let Some(at) = nearest {
-        nearest_symbol(sheet, map.place(at));
+    let nearest = view.nearest.filter(|at| *at != view.start);
+    let leading = view.leads_to_goal.filter(|at| *at != view.goal);
+    let marks = [
+        (nearest, nearest_symbol as fn(&mut Sheet, Place), "reached place nearest to the goal"),
+        (leading, leading_symbol, "place nearest to the start that leads to the goal"),
+    ];
+    let marks: Vec<_> =
+        marks.into_iter().filter_map(|(at, symbol, text)| Some((at.filter(|at| map.shows(*at))?, symbol, text))).collect();
+    for (at, symbol, _) in &marks {
+        symbol(sheet, map.place(*at));
     }
     let goals = [GoalMark { at: view.goal, hops: view.path.len().checked_sub(1).map(|hops| hops as u64) }];
     let mut taken = map.ends(sheet, &[view.start], &goals, &paths);
-    taken.kept.extend(nearest.map(|at| Bounds::around(map.place(at), MARKER_MM)));
+    taken.kept.extend(marks.iter().map(|(at, ..)| Bounds::around(map.place(*at), MARKER_MM)));
     numbers(sheet, &map, view, &mut taken);
     let mut entries = end_keys(&[view.start], &goals, &paths);
-    entries.extend(nearest.map(|_| (Swatch::Symbol(nearest_symbol), "reached place nearest to the goal".to_owned())));
+    entries.extend(marks.into_iter().map(|(_, symbol, text)| (Swatch::Symbol(symbol), text.to_owned())));
     if window.has_gaps(view.dem) {
         entries.push((Swatch::Symbol(no_data_symbol), "no data".to_owned()));
     }
@@ -74,9 +83,20 @@ fn numbers(sheet: &mut Sheet, map: &MapPanel, view: &PlanView<'_>, taken: &mut T
     }
 }
 
-/// A triangle: the nearest place that was reached.
-fn nearest_symbol(sheet: &mut Sheet, (x, y): Place) {
-    for (r, colour) in [(2.3, WHITE), (1.8, BLACK), (1.1, ORANGE)] {
-        sheet.area(vec![(x, y - r), (x + 0.87 * r, y + 0.5 * r), (x - 0.87 * r, y + 0.5 * r)], colour, 1.0);
+/// A triangle that points up: the reached place nearest to the goal.
+fn nearest_symbol(sheet: &mut Sheet, at: Place) {
+    triangle(sheet, at, 1.0, ORANGE);
+}
+
+/// A triangle that points down: the place nearest to the start that leads to the goal.
+fn leading_symbol(sheet: &mut Sheet, at: Place) {
+    triangle(sheet, at, -1.0, SKY);
+}
+
+/// `up`: 1 if it points up, -1 if it points down.
+fn triangle(sheet: &mut Sheet, (x, y): Place, up: f64, inside: RGBColor) {
+    for (r, colour) in [(2.3, WHITE), (1.8, BLACK), (1.1, inside)] {
+        let foot = y + 0.5 * r * up;
+        sheet.area(vec![(x, y - r * up), (x + 0.87 * r, foot), (x - 0.87 * r, foot)], colour, 1.0);
     }
 }
