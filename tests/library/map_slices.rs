@@ -57,7 +57,7 @@ fn compare(world: &World, start: Post) -> [usize; 2] {
         let nodes = SurfaceNodes::new(&ground, finer, ends.into_iter().chain(places)).unwrap();
         let goal = RouteGoal { start: ends[0], goal: ends[1], effort: Effort::TakeoffSpeed, takeoff: TakeoffChoice::LeastSpeed };
         let route = free_route(&ground, &nodes, &goal, &()).unwrap();
-        assert!(route.places.is_some(), "{post:?} is reached along its slice and by no route over its nodes");
+        assert!(route.path.is_some(), "{post:?} is reached along its slice and by no route over its nodes");
     }
     counts
 }
