@@ -36,7 +36,8 @@ fn compare(world: &World, start: Post) -> [usize; 2] {
     let spacing = PointSpacing::AtMostM(map.dx_m() / 4.0);
     let options = SearchOptions { spacing: Some(spacing), ..SearchOptions::default() };
     let mut counts = [0; 2];
-    for post in (0..world.dem.rows()).step_by(3).flat_map(|row| (0..world.dem.cols()).step_by(3).map(move |col| Post { row, col })) {
+    for post in (0..world.dem.rows()).step_by(3).flat_map(|row| (0..world.dem.cols()).step_by(3).map(move |col| Post { row, col }))
+    {
         let ends = [map.post(start.row, start.col), map.post(post.row, post.col)];
         let Ok(chain) = ground.chain(ends[0], ends[1]) else { continue };
         let geometry = chain.geometry();
@@ -82,7 +83,8 @@ fn a_map_over_quarters_of_posts_reaches_what_slices_reach() {
             let limits = HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(speed_m_s, speed_m_s) };
             let cut = cut_out(&dem, first, side, 0, &mut draw);
             let world = World::new(cut, Hopper::new(limits).unwrap(), friction(mu), gravity);
-            let Some(start) = PostHops::new(world.ground(), 1).unwrap().nearest_usable(Post { row: side / 2, col: side / 2 }) else {
+            let Some(start) = PostHops::new(world.ground(), 1).unwrap().nearest_usable(Post { row: side / 2, col: side / 2 })
+            else {
                 continue;
             };
             let [by_slice, missed] = compare(&world, start);

@@ -64,8 +64,7 @@ impl NodeLattice {
     /// A node on the triangulated DEM; `None` without elevation.
     pub fn position(&self, dem: &Dem, node: Post) -> Option<MapPosition> {
         let Post { row, col } = self.in_raster(node);
-        let z_m =
-            if self.per_post == 1 { dem.elevation(row, col) } else { dem.height_between_posts(self.per_post, (col, row)) }?;
+        let z_m = if self.per_post == 1 { dem.elevation(row, col) } else { dem.height_between_posts(self.per_post, (col, row)) }?;
         Some(MapPosition { at: self.at(dem.georeference(), node), z_m })
     }
 
