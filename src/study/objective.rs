@@ -60,8 +60,6 @@ pub(super) fn reliability(case: &Case, counts: bool) -> Result<Option<Reliabilit
 
 /// What is to be known about a path by objective, whose hops span so many nodes on average.
 pub(super) fn warnings(scenario: &Scenario, spanned: Option<f64>) -> Vec<String> {
-    /// The least number of nodes at which they do not decide the length of a hop.
-    const SPANNED: f64 = 3.0;
     let mut warnings = Vec::new();
     let objective = scenario.full_objective();
     let has_errors = scenario.uncertainty.as_ref().is_some_and(|keys| !keys.errors.is_none());
@@ -71,15 +69,26 @@ pub(super) fn warnings(scenario: &Scenario, spanned: Option<f64>) -> Vec<String>
              shows how reliably it is flown, and a robot that replans there goes on by hops and effort"
         ));
     }
-    let is_energy = objective.first() == Amount::Energy && scenario.hopper.limits().preparation_energy_j.is_none_or(|j| j == 0.0);
-    if let Some(spanned) = spanned.filter(|spanned| is_energy && *spanned < SPANNED) {
-        warnings.push(format!(
-            "hops of this path span {spanned:.1} nodes on average, expected at least {SPANNED}: without an energy to prepare a hop the least \
+    warnings.extend(spanned.and_then(|spanned| short_hops(scenario, "hops of this path", spanned)));
+    warnings
+}
+
+/// A warning where the nodes decide how short the hops of least energy are.
+///
+/// # Arguments
+/// `spanned`: how many nodes a hop spans on average.
+pub(super) fn short_hops(scenario: &Scenario, which: &str, spanned: f64) -> Option<String> {
+    /// The least number of nodes at which they do not decide the length of a hop.
+    const SPANNED: f64 = 3.0;
+    let is_energy = scenario.full_objective().first() == Amount::Energy;
+    let is_prepared = scenario.hopper.limits().preparation_energy_j.is_some_and(|energy_j| energy_j != 0.0);
+    (is_energy && !is_prepared && spanned < SPANNED).then(|| {
+        format!(
+            "{which} span {spanned:.1} nodes on average, expected at least {SPANNED}: without an energy to prepare a hop the least \
              energy is nearly the same whatever the hops, so that the nodes decide how short they are; put hops first, or give \
              hopper.preparation_energy_j"
-        ));
-    }
-    warnings
+        )
+    })
 }
 
 /// How many nodes a hop of a path spans on average; `None` without hops.

@@ -294,8 +294,9 @@ fn the_refusal_of_a_start_or_goal_is_reported() {
     let document = desk.json(&["map", "walled.asc", "--start", "114,205", "--goal", "102,205", "--scenario", "hopper.toml"]);
     let warnings = document["warnings"].as_array().unwrap();
     // Whole metres on posts 1 m apart have steps of 45 degrees.
-    assert!(warnings.len() == 2 && warnings[0].as_str().unwrap().contains("45.0 degrees"), "{warnings:?}");
-    let said = warnings[1].as_str().unwrap();
+    assert!(warnings.len() == 3 && warnings[0].as_str().unwrap().contains("45.0 degrees"), "{warnings:?}");
+    assert!(warnings[1].as_str().unwrap().contains("nodes of the map, 1 m apart, fewer than 8"), "{warnings:?}");
+    let said = warnings[2].as_str().unwrap();
     for part in ["the start's post (114.000, 205.000) m slopes 88.1 deg", "ends at 31.0 deg", "usable one is (113.000, 205.000) m"]
     {
         assert!(said.contains(part), "{said}");

@@ -159,7 +159,7 @@ fn what_a_map_or_a_fan_needs_is_printed_or_refused_before_it_is_computed() {
     let fan =
         &["fan", "ground.tif", "--scenario", "slow.toml", "--from", "5,5", "--length", "9", "--points-per-segment", "2000"][..];
     for command in [map, fan] {
-        let dry = desk.run(&[command, &["--dry-run"]].concat());
+        let dry = desk.run(&[command, &["--dry-run", "--quiet"]].concat());
         assert_eq!((dry.status, dry.stderr.as_str()), (0, ""), "{command:?}");
         let size = desk.json(&[command, &["--dry-run"]].concat());
         let number = |key: &str| size[key].as_u64().unwrap();

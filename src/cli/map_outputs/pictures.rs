@@ -36,7 +36,7 @@ pub(super) fn map(input: &MapInput, prepared: &PreparedMap, study: &MapStudy, fi
     let starts: Vec<MapPoint> = prepared.starts.iter().map(|start| start.at).collect();
     let lines = subtitle(answer, &input.bare.scenario);
     let surface = prepared.finest().map_err(|e| Failure::of(&e))?;
-    let posts = MapPosts { dem: &surface, stride: prepared.lattice.stride };
+    let posts = MapPosts { dem: &surface, stride: prepared.lattice.stride, per_post: prepared.lattice.per_post };
     if let Some((amount, totals)) = least.first().filter(|(amount, _)| *amount != Amount::Hops) {
         let within = answer.objective.as_ref().and_then(|objective| objective.budget.as_ref());
         let figure = ValueMapFigure {

@@ -23,9 +23,17 @@ pub struct MapPosts<'a> {
     pub dem: &'a Dem,
     /// 1 for every post; 0 counts as 1.
     pub stride: usize,
+    /// How many posts `dem` has in place of each of the original raster, which is the same surface; 1 for the raster itself. With more, answers
+    /// are for nodes.
+    pub per_post: usize,
 }
 
 impl MapPosts<'_> {
+    /// What there are answers for, in words.
+    pub(super) const fn node(&self) -> &'static str {
+        if self.per_post > 1 { "node" } else { "post" }
+    }
+
     /// Rows and columns of the map's posts.
     ///
     /// A DEM of 256 x 256 posts with stride 3 has 86 x 86 of them, the last at row and column 255.

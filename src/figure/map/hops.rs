@@ -86,14 +86,20 @@ pub(super) fn about_raster(posts: &MapPosts<'_>, window: &Window) -> String {
         let short = super::super::ticks::short;
         if x == y { format!("{} m", short(x * stride)) } else { format!("{} m by {} m", short(x * stride), short(y * stride)) }
     };
-    let (rows, cols) = (window.rows.len(), window.cols.len());
+    // A window may be part of a raster, of which the posts between are counted.
+    let of_posts = |nodes: usize| nodes.div_ceil(posts.per_post.max(1));
+    let (rows, cols) = (of_posts(window.rows.len()), of_posts(window.cols.len()));
     let part = if *window == Window::whole(posts.dem) { "" } else { "part of the DEM, " };
-    let mut text = format!("Terrain: {part}{rows} x {cols} posts, {} apart, lit from the north-west.", spacing(1));
+    let mut text =
+        format!("Terrain: {part}{rows} x {cols} posts, {} apart, lit from the north-west.", spacing(posts.per_post.max(1)));
+    if posts.per_post > 1 {
+        text = format!("{text} Answers for {} nodes a post spacing, {} apart.", posts.per_post, spacing(1));
+    }
     if posts.stride > 1 {
         text = format!("{text} Answers for one post in {} each way, {} apart.", posts.stride, spacing(posts.stride));
     }
     if window.every() > 1 {
-        text = format!("{text} Drawn: one post in {} each way.", window.every());
+        text = format!("{text} Drawn: one {} in {} each way.", posts.node(), window.every());
     }
     text
 }
@@ -129,6 +135,8 @@ struct Counts {
     not_searched: u64,
     asks_return: bool,
     several_starts: bool,
+    /// What is counted.
+    node: &'static str,
 }
 
 impl Counts {
@@ -150,6 +158,7 @@ impl Counts {
             not_searched: 0,
             asks_return,
             several_starts: figure.starts.len() > 1,
+            node: figure.posts.node(),
         };
         for (at, &hops) in figure.hops.iter().enumerate() {
             let pattern = pattern_of(figure, at);
@@ -191,6 +200,7 @@ impl Counts {
         // A count of 0 posts without a return path is shown too, if return paths were requested.
         let is_told = |&(_, text, count): &(Swatch, &str, u64)| count > 0 || (self.asks_return && text == no_way_back);
         let all = std::iter::once(start).chain(bands).chain(rest).filter(is_told);
-        all.map(|(swatch, text, count)| (swatch, format!("{text}: {count} post{}", if count == 1 { "" } else { "s" }))).collect()
+        all.map(|(swatch, text, count)| (swatch, format!("{text}: {count} {}{}", self.node, if count == 1 { "" } else { "s" })))
+            .collect()
     }
 }

@@ -236,6 +236,6 @@ fn words(figure: &LandingMapFigure<'_>, map: &MapPanel, window: &Window) -> Vec<
     if beyond > 0 {
         found.push(format!("Landings beyond the DEM, not drawn: {beyond}."));
     }
-    found.push(about_raster(&MapPosts { dem: figure.dem, stride: 1 }, window));
+    found.push(about_raster(&MapPosts { dem: figure.dem, stride: 1, per_post: 1 }, window));
     found
 }

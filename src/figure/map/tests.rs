@@ -76,7 +76,7 @@ fn drawn(name: &str, posts: MapPosts<'_>, per_hop: f64, most: f64, with_return: 
 fn hop_maps_of_real_terrain_are_complete() {
     for (name, file, per_hop, most) in [("hops-mars", MARS, 6.0, 7.0), ("hops-moon", MOON, 5.0, 30.0)] {
         let Some(dem) = real_dem(file) else { continue };
-        let picture = drawn(name, MapPosts { dem: &dem, stride: 1 }, per_hop, most, name == "hops-moon");
+        let picture = drawn(name, MapPosts { dem: &dem, stride: 1, per_post: 1 }, per_hop, most, name == "hops-moon");
         assert_eq!(picture.sheet.images.len(), 1, "one raster");
         let texts = texts(&picture);
         for words in
@@ -91,11 +91,11 @@ fn hop_maps_of_real_terrain_are_complete() {
 #[test]
 fn maps_with_a_stride_with_holes_and_with_many_posts_are_complete_and_say_so() {
     let small = made_up(31, 47, 2.5);
-    let picture = drawn("hops-stride", MapPosts { dem: &small, stride: 4 }, 3.0, 300.0, false);
+    let picture = drawn("hops-stride", MapPosts { dem: &small, stride: 4, per_post: 1 }, 3.0, 300.0, false);
     let lettering = texts(&picture);
     assert!(lettering.contains("no data: ") && lettering.contains("one post in 4 each way, 10 m apart"), "{lettering}");
     let large = made_up(2100, 300, 5.0);
-    let picture = drawn("hops-large", MapPosts { dem: &large, stride: 1 }, 12.0, 1000.0, false);
+    let picture = drawn("hops-large", MapPosts { dem: &large, stride: 1, per_post: 1 }, 12.0, 1000.0, false);
     assert!(texts(&picture).contains("Drawn: one post in 2 each way"));
     let image = &picture.sheet.images[0].pixels;
     assert_eq!((image.width, image.height), (150, 1050));
@@ -105,7 +105,7 @@ fn maps_with_a_stride_with_holes_and_with_many_posts_are_complete_and_say_so() {
 #[test]
 fn pixels_show_the_class_of_their_post() {
     let dem = made_up(12, 20, 1.0);
-    let posts = MapPosts { dem: &dem, stride: 1 };
+    let posts = MapPosts { dem: &dem, stride: 1, per_post: 1 };
     let hops: Vec<i16> =
         (0..240).map(|i| if dem.elevation(i / 20, i % 20).is_none() { HOPS_NO_DATA } else { (i % 4) as i16 - 1 }).collect();
     let picture = draw_hop_map(&hop_map(posts, &hops, None)).unwrap();
@@ -132,7 +132,7 @@ fn pixels_show_the_class_of_their_post() {
 #[test]
 fn nothing_reached_only_the_start_and_very_many_hops_are_drawn() {
     let dem = made_up(9, 30, 1.0);
-    let posts = MapPosts { dem: &dem, stride: 1 };
+    let posts = MapPosts { dem: &dem, stride: 1, per_post: 1 };
     for (name, value) in
         [("hops-none", HOPS_UNREACHABLE), ("hops-start", 0), ("hops-most", i16::MAX), ("hops-no-data", HOPS_NO_DATA)]
     {
@@ -147,7 +147,7 @@ fn nothing_reached_only_the_start_and_very_many_hops_are_drawn() {
 #[test]
 fn keep_out_posts_are_a_separate_class_and_zero_posts_without_return_path_are_stated() {
     let dem = made_up(12, 20, 1.0);
-    let posts = MapPosts { dem: &dem, stride: 1 };
+    let posts = MapPosts { dem: &dem, stride: 1, per_post: 1 };
     let at = |i: usize| dem.elevation(i / 20, i % 20);
     let hops: Vec<i16> = (0..240)
         .map(|i| match at(i) {
@@ -189,7 +189,7 @@ fn value_map<'a>(posts: MapPosts<'a>, values: &'a [f64], name: &str) -> ValueMap
 #[test]
 fn value_maps_have_round_classes_and_accept_any_values() {
     if let Some(dem) = real_dem(MOON) {
-        let posts = MapPosts { dem: &dem, stride: 2 };
+        let posts = MapPosts { dem: &dem, stride: 2, per_post: 1 };
         let values: Vec<f64> = (0..128 * 128usize)
             .map(|i| {
                 let away = libm::hypot((i / 128) as f64 - 60.0, (i % 128) as f64 - 70.0);
@@ -204,7 +204,7 @@ fn value_maps_have_round_classes_and_accept_any_values() {
         }
     }
     let dem = made_up(9, 30, 1.0);
-    let posts = MapPosts { dem: &dem, stride: 1 };
+    let posts = MapPosts { dem: &dem, stride: 1, per_post: 1 };
     for (name, value) in
         [("values-none", f64::NAN), ("values-equal", 3.25), ("values-infinite", f64::INFINITY), ("values-huge", 1e300)]
     {

@@ -35,8 +35,8 @@ const FINE: f64 = 1.0e-9;
 /// All single hops between the nodes of a DEM.
 pub struct PostHops {
     pub(super) ground: DemGround,
-    /// The same surface with a post at every node, where nodes are finer than posts.
-    finer: Option<OverlaidDem>,
+    /// The same surface with a post at every node: the terrain itself, unless nodes are finer than posts.
+    surface: OverlaidDem,
     scale: HeightScale,
     pub(super) lattice: NodeLattice,
     pub(super) table: OffsetTable,
@@ -64,13 +64,13 @@ impl std::fmt::Debug for PostHops {
     }
 }
 
-/// The surface of a ground with a post at every node; `None` where nodes are posts.
-fn finer(ground: &DemGround, lattice: NodeLattice) -> Result<Option<OverlaidDem>, MapError> {
-    if lattice.per_post == 1 {
-        return Ok(None);
-    }
+/// The surface of a ground with a post at every node.
+fn surface(ground: &DemGround, lattice: NodeLattice) -> Result<OverlaidDem, MapError> {
     let terrain = ground.terrain();
-    Ok(Some(OverlaidDem::new(terrain.dem().finer(lattice.per_post)?, terrain.overlays().clone())))
+    if lattice.per_post == 1 {
+        return Ok(terrain.clone());
+    }
+    Ok(OverlaidDem::new(terrain.dem().finer(lattice.per_post)?, terrain.overlays().clone()))
 }
 
 /// The result of fast arithmetic on a pair.
@@ -108,12 +108,11 @@ impl PostHops {
             return Err(MapError::Request { what: "hopper.footprint_m", found, expected });
         }
         exact::probe(&ground)?;
-        let finer = finer(&ground, lattice)?;
-        let terrain = finer.as_ref().unwrap_or(ground.terrain());
-        let dem = terrain.dem();
+        let surface = surface(&ground, lattice)?;
+        let dem = surface.dem();
         let scale = HeightScale::of(dem);
         let heights = Heights::of(dem, &scale);
-        let overlays = OverlayTable::new(terrain, ground.constant_friction())?;
+        let overlays = OverlayTable::new(&surface, ground.constant_friction())?;
         let footings = FootingTable::new(&ground, lattice, overlays.as_ref());
         // With a footprint, the plane fitted over it is held against the rest slope, not the facets.
         let rest = |post| rest_tangent(&ground, overlays.as_ref(), post).filter(|_| footings.is_none());
@@ -134,7 +133,7 @@ impl PostHops {
         let clearance = ground.envelope().clearance();
         let by_vertices = lattice.per_post > 1 && clearance.height_m() > 0.0 && !clearance.has_kinks();
         let mut hops =
-            Self { finer, scale, lattice, table, facets, overlays, footings, grip, within_reach, coarse, by_vertices, ground };
+            Self { surface, scale, lattice, table, facets, overlays, footings, grip, within_reach, coarse, by_vertices, ground };
         hops.set_reach()?;
         Ok(hops)
     }
@@ -157,8 +156,7 @@ impl PostHops {
     /// The heights of the surface, with a post at every node.
     #[inline]
     pub(super) fn heights(&self) -> Heights<'_> {
-        let terrain = self.finer.as_ref().unwrap_or(self.ground.terrain());
-        Heights::of(terrain.dem(), &self.scale)
+        Heights::of(self.surface.dem(), &self.scale)
     }
 
     /// All offsets, nearest first.

@@ -11,7 +11,7 @@ use crate::{
     ballistics::PathBounds,
     ground::Surface,
     path::{Hop, HopPath},
-    planner::{Amount, Objective, TotalBudget},
+    planner::{Amount, TotalBudget},
     progress::Progress,
     reach::map::{
         HopMap, Journey, MapHop, MapObjective, Mobility, Post, PostHops, Search, Source, costs_to_go, joined, least_totals,
@@ -22,7 +22,7 @@ use crate::{
         PropellantShortage, SimulationRecord, SuccessEstimate, TotalsRecord,
     },
     scenario::UncertaintyKeys,
-    study::{Extremes, TrialGround, constant_gravity_warnings, sense::unplanned_bounces},
+    study::{Extremes, TrialGround, constant_gravity_warnings, objective::short_hops, sense::unplanned_bounces},
     uncertainty::{Mission, Policy, Simulation},
     world::FrictionCone,
 };
@@ -161,7 +161,7 @@ impl PreparedMap {
         let hops: Vec<_> = paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
         warnings.extend(constant_gravity_warnings(&scenario.body, Extremes::of(&hops)));
         warnings.extend(unplanned_bounces(&hops));
-        warnings.extend(self.short_hops(question, &hops));
+        warnings.extend(self.spanned_nodes(&hops).and_then(|spanned| short_hops(scenario, "hops to the goals", spanned)));
         Ok(MapStudy { answer, warnings, out, back, mobility, predecessors, least, amounts, goal_hops, paths })
     }
 
@@ -220,6 +220,7 @@ impl PreparedMap {
 
     /// Warnings for starts and goals at which no hop can take off or land.
     fn refusals(&self, hops: &PostHops) -> Vec<String> {
+        let node = if self.lattice.per_post > 1 { "node" } else { "post" };
         let refused = |spot: &Spot| {
             let refusal = hops.refusal(spot.post)?;
             let nearest = hops.nearest_usable(spot.post).map_or_else(
@@ -230,7 +231,7 @@ impl PreparedMap {
                 },
             );
             Some(format!(
-                "the {}'s post ({:.3}, {:.3}) m {refusal}: no hop begins or ends there; {nearest}",
+                "the {}'s {node} ({:.3}, {:.3}) m {refusal}: no hop begins or ends there; {nearest}",
                 spot.end.name(),
                 spot.at.x,
                 spot.at.y
@@ -239,26 +240,13 @@ impl PreparedMap {
         self.starts.iter().chain(&self.goals).filter_map(refused).collect()
     }
 
-    /// A warning where the nodes decide how short the hops of least energy are.
-    fn short_hops(&self, question: &MapQuestion<'_>, hops: &[Hop]) -> Option<String> {
-        /// The least number of nodes at which they do not decide.
-        const SPANNED: f64 = 3.0;
-        let first = question.scenario.objective.as_ref().map(Objective::first);
-        let is_prepared = question.scenario.hopper.limits().preparation_energy_j.is_some_and(|energy_j| energy_j > 0.0);
-        if first != Some(Amount::Energy) || is_prepared || hops.is_empty() {
-            return None;
-        }
+    /// How many nodes the hops to the goals span on average; `None` without hops.
+    fn spanned_nodes(&self, hops: &[Hop]) -> Option<f64> {
         let nodes = self.nodes();
         let runs_m: f64 = hops.iter().map(|hop| hop.landing.along_m - hop.takeoff.along_m).sum();
         #[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
         let spanned = runs_m / (hops.len() as f64 * nodes.dx_m().max(nodes.dy_m()));
-        (spanned < SPANNED).then(|| {
-            format!(
-                "hops to the goals span {spanned:.1} nodes on average, expected at least {SPANNED}: without an energy to prepare a hop the \
-                 least energy is nearly the same whatever the hops, so that the nodes decide how short they are; put hops first, or give \
-                 hopper.preparation_energy_j"
-            )
-        })
+        (!hops.is_empty()).then_some(spanned)
     }
 
     /// The ground as the warnings about trials see it.
