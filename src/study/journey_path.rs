@@ -1,6 +1,10 @@
 //! The path of a case, along its transect or in any direction: what questions that vary a key ask of each value.
 
-use super::{Case, JourneyError, free_trials::route_with_success, journey};
+use super::{
+    Case, JourneyError,
+    free_trials::route_with_success,
+    journey::{self, Searched},
+};
 use crate::{
     graph::Outcome,
     path::{HopPath, generate},
@@ -8,8 +12,6 @@ use crate::{
     report::{CheckAnswer, ObjectiveRecord, SuccessBudgetRecord},
     scenario::Route,
 };
-
-use journey::Searched;
 
 /// The path of a case, and what its budgets say of it.
 #[derive(Clone, Debug)]

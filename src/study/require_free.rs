@@ -2,8 +2,8 @@
 
 use super::{Case, RequireError, Required, journey_path::JourneyPath, require::Question};
 use crate::{
-    graph::proof::{CapabilityRange, ProofVerdict, least_capability},
-    progress::Progress,
+    graph::proof::{CapabilityRange, ProofVerdict, Threshold},
+    progress::{Detail, Meter, Progress, Stage},
     report::{DeratingRecord, HopRecord, RequireAnswer, RequireTry, TotalsRecord},
 };
 
@@ -26,7 +26,8 @@ impl Tried {
     }
 }
 
-/// Bisects: over the same nodes a more capable value never takes a hop away, so that the goal is reached from one value on.
+/// The least capable value, from the weakest on: over the same nodes a more capable value never takes a hop away, so that the goal is reached
+/// from one value on. Values far above it are not tried, whose searches, with many nodes within a hop of each other, take longest.
 ///
 /// # Errors
 /// [`RequireError`].
@@ -35,16 +36,30 @@ pub(super) fn require_free(
     range: CapabilityRange,
     progress: &dyn Progress,
 ) -> Result<Required, RequireError> {
+    let meter = Meter::new(progress, Stage::Requirement);
+    meter.report(Detail::None)?;
     let mut tries: Vec<Tried> = Vec::new();
-    let mut reached_at = |value| {
+    let mut threshold = Threshold { unreachable_at: None, reachable_at: None };
+    let mut attempt = |threshold: &mut Threshold, value: f64| {
         let case = question.at(value)?;
         let route = JourneyPath::of(&case, progress)?;
-        // Not reached over these nodes is not unreachable: the name of the verdict is that of the bisection.
-        let verdict = if route.hops().is_some() { ProofVerdict::Traversable } else { ProofVerdict::Untraversable };
+        let is_reached = route.hops().is_some();
+        *(if is_reached { &mut threshold.reachable_at } else { &mut threshold.unreachable_at }) = Some(value);
         tries.push(Tried { value, case, route });
-        Ok::<ProofVerdict, RequireError>(verdict)
+        meter.complete_one()?;
+        Ok::<bool, RequireError>(is_reached)
     };
-    let threshold = least_capability(range, &mut reached_at, progress)?;
+    let octaves = range.octaves();
+    for i in 0..=octaves {
+        if attempt(&mut threshold, range.at_share(f64::from(i) / f64::from(octaves)))? {
+            break;
+        }
+    }
+    while let Threshold { unreachable_at: Some(low), reachable_at: Some(high) } = threshold
+        && !range.is_close(low, high)
+    {
+        attempt(&mut threshold, range.middle(low, high))?;
+    }
     let first = &question.variation.first;
     let ends = first.ends()?;
     let reached = tries.iter().find(|tried| Some(tried.value) == threshold.reachable_at);

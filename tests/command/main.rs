@@ -19,6 +19,7 @@ mod escape;
 mod exit_status;
 mod footprint;
 mod free_route;
+mod free_studies;
 mod gis;
 mod hop_on_map;
 #[cfg(unix)]

@@ -46,6 +46,12 @@ impl CapabilityRange {
         }
     }
 
+    /// How many times the values double from the weakest to the strongest, or halve, rounded up; 1 of a range with zero or negative values.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to some thousands")]
+    pub(crate) fn octaves(&self) -> u32 {
+        if self.is_positive() { (libm::log2(self.strongest / self.weakest).abs().ceil() as u32).max(1) } else { 1 }
+    }
+
     fn is_positive(&self) -> bool {
         self.weakest > 0.0 && self.strongest > 0.0
     }
