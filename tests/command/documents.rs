@@ -15,7 +15,7 @@ use crate::desk::chta;
 
 /// Commands whose answers have every part that an answer may have: found and refused, with proof, with trials, on maps with and without
 /// a projection, with propellant, with commands in steps, with risk.
-const COMMANDS: [&str; 45] = [
+const COMMANDS: [&str; 47] = [
     "hop data/scenarios/paper_76m.toml --from 0 --to 20",
     "hop data/scenarios/paper_76m.toml --from 0 --to 25",
     "hop data/scenarios/simple.toml",
