@@ -7,7 +7,8 @@ use std::fs;
 use crate::desk::Desk;
 
 /// Every option of every command that names a picture, with a command line that ends in it.
-const PICTURES: [&[&str]; 11] = [
+const PICTURES: [&[&str]; 12] = [
+    &["hop", "plate.obj", "--from", "1,1,0", "--to", "3,3,0", "--scenario", "map.toml", "--plot"],
     &["plan", "scenario.toml", "--plot"],
     &["plan", "scenario.toml", "--set", "hopper.takeoff_speed_max_m_s=1", "--plot"],
     &["check", "scenario.toml", "--prove", "--plot"],

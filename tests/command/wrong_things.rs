@@ -97,8 +97,19 @@ const POSITIONS: [(&str, &[&str], &[&str]); 14] = [
 ];
 
 const CHAINS: &[&str] = &["chain.csv", "scenario.toml", "result.json", "empty.tif"];
-const HOP_TERRAINS: &[&str] =
-    &["chain.csv", "scenario.toml", "result.json", "empty.tif", "ground.tif", "ground.asc", "ground.xyz", "label.lbl"];
+const HOP_TERRAINS: &[&str] = &[
+    "chain.csv",
+    "scenario.toml",
+    "result.json",
+    "empty.tif",
+    "ground.tif",
+    "ground.asc",
+    "ground.xyz",
+    "label.lbl",
+    "plate.obj",
+    "plate.ply",
+    "plate.stl",
+];
 const SCENARIOS: &[&str] = &["scenario.toml", "result.json"];
 const RASTERS: &[&str] = &["ground.tif", "ground.asc", "ground.xyz", "label.lbl"];
 const MAPS: &[&str] = &["ground.tif", "ground.asc", "ground.xyz", "label.lbl", "scenario.toml", "result.json"];
