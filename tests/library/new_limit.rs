@@ -23,7 +23,7 @@ const PLACES: [&str; 6] = ["src", "tests", "benches", "examples", "data/validati
 const OWN: &str = "tests/library/new_limit.rs";
 
 /// Files in which the name of the sample is that of the amount of a path.
-const OF_AMOUNT: [&str; 2] = ["src/planner/amount.rs", "tests/command/objective.rs"];
+const OF_AMOUNT: [&str; 3] = ["src/planner/amount.rs", "tests/command/free_route.rs", "tests/command/objective.rs"];
 
 /// A source file: its path in the repository and its text.
 struct Source {

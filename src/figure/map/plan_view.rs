@@ -71,7 +71,7 @@ pub(in super::super) fn draw_plan_view(sheet: &mut Sheet, view: &PlanView<'_>, t
         entries.push((Swatch::Symbol(no_data_symbol), "no data".to_owned()));
     }
     let end_mm = keys::draw(sheet, &entries, end_mm + 3.0) + 0.8;
-    paragraph(sheet, &about_raster(&MapPosts { dem: view.dem, stride: 1 }, &window), SMALL_MM, false, end_mm)
+    paragraph(sheet, &about_raster(&MapPosts { dem: view.dem, stride: 1, per_post: 1 }, &window), SMALL_MM, false, end_mm)
 }
 
 /// The number of every hop, or of every n-th, beside its landing; the goal has its own name.
