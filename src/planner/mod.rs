@@ -1,7 +1,7 @@
 //! The search for paths of legs: along a chain by any objective and within budgets, and over a DEM in any direction.
 //!
 //! [`search`] and [`front`] work on a [`LegGraph`]: nodes are numbers, edges are visited and never stored, and each edge offers its
-//! distinct commands. [`ChainLegs`] is the graph of a chain. [`free_route`] finds the fewest hops over the nodes of a DEM:
+//! distinct commands. [`ChainLegs`] is the graph of a chain, [`SurfaceLegs`] that of a DEM, over whose nodes [`free_route`] and [`free_route_by`] search:
 //!
 //! ```text
 //!   o . . . o . . . o      o  posts of the DEM          .  lattice of n nodes a post spacing (here 4)
