@@ -1,6 +1,10 @@
 //! Windows of hops over meshes against the windows of a DEM, against arcs that are flown facet by facet, and against closed forms.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot build its mesh should stop")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "a test that cannot build its mesh should stop, and says what it compared"
+)]
 
 use chta::{
     ballistics::Arc,
