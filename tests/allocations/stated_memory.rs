@@ -92,6 +92,7 @@ fn a_map_holds_at_most_the_bytes_that_it_states() {
             starts: [start(96.0, 84.0), start(20.0, 20.0), start(170.0, 150.0)][..starts].to_vec(),
             goals: if footprint.contains("trials") { vec![start(112.0, 84.0)] } else { Vec::new() },
             stride,
+            auto_nodes: false,
             effort,
             returns,
             mobility,

@@ -133,7 +133,7 @@ impl PostHops {
         let clearance = ground.envelope().clearance();
         let by_vertices = lattice.per_post > 1 && clearance.height_m() > 0.0 && !clearance.has_kinks();
         let mut hops =
-            Self { surface, scale, lattice, table, facets, overlays, footings, grip, within_reach, coarse, by_vertices, ground };
+            Self { ground, surface, scale, lattice, table, facets, overlays, footings, grip, within_reach, coarse, by_vertices };
         hops.set_reach()?;
         Ok(hops)
     }

@@ -136,12 +136,7 @@ impl Labels {
     /// The order of totals and of what decides between equals, against what is known of a node.
     fn compared(&self, totals: &Totals, (node, source, offset): (usize, u32, u32)) -> Ordering {
         let by_totals = totals.iter().zip(self.of(node)).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
-        by_totals.unwrap_or_else(|| (source, self.rank(offset)).cmp(&(self.source(node), self.rank(self.previous[node]))))
-    }
-
-    /// A source begins before any hop leads to it.
-    const fn rank(&self, offset: u32) -> u32 {
-        offset.wrapping_add(1)
+        by_totals.unwrap_or_else(|| (source, rank(offset)).cmp(&(self.source(node), rank(self.previous[node]))))
     }
 
     /// Takes an offer if it is better.
@@ -361,8 +356,13 @@ impl<'a> Search<'a> {
                 Ordering::Equal => {}
             }
         }
-        (source, labels.rank(offset)) < (labels.source(to), labels.rank(labels.previous[to]))
+        (source, rank(offset)) < (labels.source(to), rank(labels.previous[to]))
     }
+}
+
+/// The place of a last hop among equals: a source begins before any hop leads to it.
+const fn rank(offset: u32) -> u32 {
+    offset.wrapping_add(1)
 }
 
 /// The number of a node in a label.

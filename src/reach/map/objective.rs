@@ -49,9 +49,9 @@ impl MapObjective {
             (_, Some(_)) => vec![TakeoffChoice::LeastSpeed, TakeoffChoice::LeastTime, TakeoffChoice::MidRange],
         };
         let bounds_by_lofts = match (objective.first(), &choices[..]) {
-            (Amount::Energy | Amount::TakeoffSpeed, [TakeoffChoice::LeastSpeed]) => true,
             (Amount::DeltaV, [TakeoffChoice::LeastSpeed]) => !limits.landing.brakes(),
-            (Amount::FlightTime | Amount::MissionTime, [TakeoffChoice::LeastTime]) => true,
+            (Amount::Energy | Amount::TakeoffSpeed, [TakeoffChoice::LeastSpeed])
+            | (Amount::FlightTime | Amount::MissionTime, [TakeoffChoice::LeastTime]) => true,
             _ => false,
         };
         let (low_m, high_m) = ground.terrain().dem().elevation_range_m();
