@@ -445,7 +445,9 @@ fn a_route_is_drawn_from_above_below_its_profile() {
         case.with(|input| {
             let places: Vec<_> = input
                 .path
-                .map(|path| (0..=path.hops.len()).map(|hop| at(5.0 + 5.0 * hop as f64, 10.0 + hop as f64)).collect())
+                .map(|path| {
+                    (0u8..).zip(0..=path.hops.len()).map(|(hop, _)| at(5.0 + 5.0 * f64::from(hop), 10.0 + f64::from(hop))).collect()
+                })
                 .unwrap_or_default();
             let goal = places.last().copied().unwrap_or(at(70.0, 50.0));
             let nearest = (!found).then_some(at(31.0, 22.0));
@@ -462,15 +464,16 @@ fn a_route_is_drawn_from_above_below_its_profile() {
             let picture = check_picture(&format!("route {found}"), || draw(&input).unwrap());
             assert!(picture.height_mm > plain.height_mm + 40.0, "{} {}", picture.height_mm, plain.height_mm);
             let texts = samples::texts(&picture);
-            let words = match found {
-                true => ["take-off cone", "path and its landings", "goal, reached", "map y, north (m)", "distance along the route"],
-                false => [
+            let words = if found {
+                ["take-off cone", "path and its landings", "goal, reached", "map y, north (m)", "distance along the route"]
+            } else {
+                [
                     "reached place nearest to the goal",
                     "place nearest to the start that leads to the goal",
                     "goal, not reached",
                     "not reached over",
                     "distance along the straight line",
-                ],
+                ]
             };
             for words in words {
                 assert!(texts.contains(words), "{words:?} is missing in {texts}");

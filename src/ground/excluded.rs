@@ -101,16 +101,13 @@ mod tests {
             let lofts = rules[0]
                 .zip(rules[1])
                 .map(|(from, to)| envelope.lofts(sight, from.takeoff.contact_limits(), to.landing.contact_limits()));
-            match lofts.filter(|lofts| !lofts.is_empty() && lofts.upper > 0.0) {
-                Some(lofts) => {
-                    let arc = Arc::new(sight, lofts.lower.max(1e-9), gravity_m_s2);
-                    assert!(!is_excluded, "{gradients:?} along {heading:?}, friction {friction}: {arc:?}");
-                    feasible += 1;
-                }
-                None => {
-                    refused += 1;
-                    excluded += u32::from(is_excluded);
-                }
+            if let Some(lofts) = lofts.filter(|lofts| !lofts.is_empty() && lofts.upper > 0.0) {
+                let arc = Arc::new(sight, lofts.lower.max(1e-9), gravity_m_s2);
+                assert!(!is_excluded, "{gradients:?} along {heading:?}, friction {friction}: {arc:?}");
+                feasible += 1;
+            } else {
+                refused += 1;
+                excluded += u32::from(is_excluded);
             }
         }
         assert!(feasible > 3000 && refused > 3000 && 10 * excluded > 8 * refused, "{feasible} feasible, {excluded} of {refused}");

@@ -152,7 +152,7 @@ pub fn free_route_by(
 ) -> Result<FreeRoute, RouteError> {
     let mut asked = Asked::new(ground, nodes, goal, progress)?;
     loop {
-        let levels = asked.hops_left(asked.hops_within(question.budgets))?;
+        let levels = asked.hops_left(hops_within(question.budgets))?;
         let Some(fewest) = levels.of(asked.start.0) else { return asked.not_found(&levels) };
         let (route, hops) = asked.found(&levels, fewest, question)?;
         // The fast walk equals the slice up to rounding: a hop on the very edge of a limit may be one for the walk alone.
@@ -241,13 +241,6 @@ impl<'a> Asked<'a> {
         Ok(Self { surface, start, goal, how, bounds, meter: Meter::new(progress, Stage::Search), pairs: 0 })
     }
 
-    /// The greatest number of hops that budgets allow; `None` if any.
-    fn hops_within(&self, budgets: &Budgets) -> Option<u64> {
-        let most = budgets.allowed(Amount::Hops);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; the cast saturates")]
-        most.is_finite().then_some(most as u64)
-    }
-
     /// The fewest hops to the goal of all nodes on paths of at most so many hops; without a number, of the fewest that there are.
     ///
     /// A path near the straight line says how many hops are enough, beyond which no node counts; where none is near, farther nodes do.
@@ -291,7 +284,7 @@ impl<'a> Asked<'a> {
         question: &RouteQuestion<'_>,
     ) -> Result<(FreeRoute, Vec<[SurfaceNode; 2]>), RouteError> {
         let RouteQuestion { objective, budgets, cap, .. } = *question;
-        let most = self.hops_within(budgets);
+        let most = hops_within(budgets);
         let allows_fewest = most.is_none_or(|most| most >= u64::from(fewest));
         let hops_decide = objective.first() == Amount::Hops && budgets.all().all(|(amount, _)| amount == Amount::Hops);
         let (mut work, mut capped) = (RouteWork { pairs_tested: self.pairs, leading: levels.known, ..RouteWork::default() }, false);
@@ -364,4 +357,11 @@ impl<'a> Asked<'a> {
             work,
         })
     }
+}
+
+/// The greatest number of hops that budgets allow; `None` if any.
+fn hops_within(budgets: &Budgets) -> Option<u64> {
+    let most = budgets.allowed(Amount::Hops);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; the cast saturates")]
+    most.is_finite().then_some(most as u64)
 }

@@ -114,13 +114,14 @@ impl SurfaceNodes {
 
     /// The row and column of a node in the lattice, of a single place those of a node near to it.
     pub(super) fn cell(&self, node: SurfaceNode) -> (usize, usize) {
-        match node.index().checked_sub(self.lattice.count()).and_then(|place| self.places.get(place)) {
-            Some(place) => self.lattice.cell_near(place.at),
-            None => {
+        let place = node.index().checked_sub(self.lattice.count()).and_then(|place| self.places.get(place));
+        place.map_or_else(
+            || {
                 let (i, j) = self.lattice.node(node.index());
                 (j, i)
-            }
-        }
+            },
+            |place| self.lattice.cell_near(place.at),
+        )
     }
 
     /// Where a node lies on the map.

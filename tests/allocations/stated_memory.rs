@@ -99,7 +99,6 @@ fn a_map_holds_at_most_the_bytes_that_it_states() {
             predecessors,
             trials: footprint.contains("trials"),
             hops_max: None,
-            auto_nodes: false,
             amounts: Vec::new(),
             memory_max_bytes: None,
         };
