@@ -1,6 +1,8 @@
 //! The command on meshes: slice, scenario, refusals.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+use std::fmt::Write as _;
+
 use assert_cmd::Command;
 use serde_json::Value;
 
@@ -155,7 +157,7 @@ fn what_is_no_hop_over_a_mesh_is_refused_with_what_is_expected() {
     // A box of 2 m on the floor.
     let mut corners = String::new();
     for i in 0..8 {
-        corners += &format!("v {} {} {}\n", 4 + 2 * (i & 1), (i & 2) - 1, (i & 4) / 2);
+        writeln!(corners, "v {} {} {}", 4 + 2 * (i & 1), (i & 2) - 1, (i & 4) / 2).unwrap();
     }
     let faces = "f 5 7 8 6\nf 9 10 12 11\nf 5 6 10 9\nf 7 11 12 8\nf 5 9 11 7\nf 6 8 12 10\n";
     let floor = SLOT.split("v 5").next().unwrap();

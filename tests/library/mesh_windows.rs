@@ -533,12 +533,12 @@ fn contacts_hold_where_every_facet_holds_the_velocity() {
         let ground = ground(mesh, HopperLimits::with_speeds(1e3, 1e3), 9.81, &surface(friction));
         for _ in 0..20 {
             let at_corner = draw.chance(0.3);
-            let pick = |draw: &mut Draw| match at_corner {
-                true => {
-                    let corners = ground.tree().mesh().vertices();
-                    ground.contact(corners[draw.below(corners.len())]).ok()
+            let pick = |draw: &mut Draw| {
+                if !at_corner {
+                    return contact(&ground, draw);
                 }
-                false => contact(&ground, draw),
+                let corners = ground.tree().mesh().vertices();
+                ground.contact(corners[draw.below(corners.len())]).ok()
             };
             let (Some(from), Some(to)) = (pick(draw), pick(draw)) else { continue };
             let Some(course) = ground.course(&from, &to) else { continue };
