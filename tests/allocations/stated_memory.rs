@@ -110,7 +110,9 @@ fn a_map_holds_at_most_the_bytes_that_it_states() {
         let what = format!("{speed_m_s} m/s, stride {stride}, {starts} starts: {held} bytes held, {stated} stated");
         assert!(study.answer.reachable_posts > 100 && peak.reports.load(Ordering::Relaxed) > 10, "{what}");
         assert!(held <= stated + RUN_TIME, "{what}");
-        assert!(8 * held > stated, "the bound is far off: {what}");
+        // Of a round of least totals the bound counts all hops, of which few improve on what is known.
+        let within = if footprint.contains("objective") { 16 } else { 8 };
+        assert!(within * held > stated, "the bound is far off: {what}");
         // The bound is kept, and what is below it is refused.
         let limited = |bytes| PreparedMap::new(&MapQuestion { memory_max_bytes: Some(bytes), ..question.clone() });
         assert!(limited(stated).is_ok() && limited(stated - 1).is_err() && limited(1 << 10).is_err(), "{what}");

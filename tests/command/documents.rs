@@ -92,7 +92,7 @@ pub(crate) fn documents() -> &'static [(String, String)] {
             commands
                 .push(format!("fan ../shared/dem/lola_dem_north.tif --from-lonlat 10,85 --headings 6 --length 30000 {by_hops}"));
             commands
-                .push(format!("map ../shared/dem/lola_dem_north.tif --start-lonlat 10,85 --goal-lonlat 20,84 --return {by_hops}"));
+                .push(format!("map ../shared/dem/lola_dem_north.tif --start-lonlat 10,85 --goal-lonlat 20,84 --return --node-spacing-max-m 1600 {by_hops}"));
         }
         let written = |command: String| {
             let arguments: Vec<&str> = command.split_whitespace().chain(["--format", "json", "--quiet"]).collect();

@@ -240,13 +240,27 @@ fn what_a_free_route_leaves_out_is_warned_of() {
     }
 }
 
+/// Beginnings of the commands of the document, each with what it prints.
+const ANSWERS: [(&str, &str); 10] = [
+    ("map data/terrain/lunar_rille.tif --start 380,90 --goal", "65999 of 66049 posts"),
+    ("map data/terrain/lunar_rille.tif --start 380,90 --goal", ", in at most 36 hops"),
+    ("map data/terrain/lunar_rille.tif --start 380,90 --goal", "25 hops"),
+    ("map data/terrain/lunar_rille.tif --start 380,90 --scenario", "23688 of 66049 posts"),
+    ("plan data/scenarios/lunar_rille_free.toml", "359.890 m over ground, 142.970 s in flight, 360.3396 J/kg"),
+    ("plan data/scenarios/lunar_rille_free.toml --front", "    37                4.6747"),
+    ("plan data/scenarios/lunar_rille.toml", "27 hops"),
+    ("require data/scenarios/lunar_rille_free.toml --vary hopper.takeoff_speed_max_m_s --from 2", "at 4.493458799 m/s, in 40 hops"),
+    ("simulate", "open-loop: 0 of 300 trials"),
+    ("simulate", "replan: 300 of 300 trials"),
+];
+
 /// The commands of the document, one after another in an empty folder beside the data.
 #[test]
 fn the_commands_of_the_document_run() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let desk = Desk::new();
     let document = fs::read_to_string(root.join("docs/missions.md")).unwrap();
-    let commands: Vec<&str> = document.lines().filter_map(|line| line.strip_prefix("chta ")).collect();
+    let commands: Vec<&str> = document.lines().filter_map(|line| line.trim_start().strip_prefix("chta ")).collect();
     assert!(commands.len() >= 7, "{commands:?}");
     for command in commands {
         let words: Vec<String> = command
@@ -256,12 +270,12 @@ fn the_commands_of_the_document_run() {
         let ran = desk.run(&words.iter().map(String::as_str).collect::<Vec<_>>());
         let warned = ran.stderr.lines().filter(|line| !line.starts_with("warning: a free route is searched by hops and effort"));
         assert_eq!((ran.status, warned.collect::<Vec<_>>()), (0, Vec::new()), "{command}");
-        for hops in ["25 hops over 360 m", "27 over 349 m"] {
-            assert!(document.contains(hops));
+        // What the document says of them.
+        for (of, text) in ANSWERS.iter().filter(|(of, _)| command.starts_with(of)) {
+            assert!(ran.stdout.contains(text), "{command}: {text:?} is missing in {}", ran.stdout);
         }
-        let said = if command.contains("free.toml") { "25 hops" } else { "27 hops" };
-        if command.starts_with("plan") {
-            assert!(ran.stdout.contains(said), "{command}: {}", ran.stdout);
-        }
+    }
+    for words in ["25 hops over 360 m", "27 over 349 m", "300 of 300 trials", "All but 50 of the 66 049 posts", "4.49 m/s", "1.2 m/s"] {
+        assert!(document.contains(words), "{words}");
     }
 }

@@ -220,7 +220,7 @@ fn missing_keys_of_a_map_are_named() {
 fn one_hop_is_written_in_the_singular() {
     let desk = walled();
     let near = desk.run(&[&MAP[..], &["--goal", "103,205", "--return"]].concat());
-    assert!(near.stdout.contains("asked for: 1 hop, 1 hop back\n"), "{}", near.stdout);
+    assert!(near.stdout.contains("given place: 1 hop, 1 hop back\n"), "{}", near.stdout);
 }
 
 /// Friction and zones without effect on the DEM or the transect give a warning.

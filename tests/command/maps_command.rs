@@ -146,7 +146,7 @@ fn a_hop_map_that_is_not_true_to_scale_is_refused_with_a_command_that_corrects_i
     let (again, _) = again.split_once(" (a map about the start").unwrap();
     let (status, accepted, warned) = chta(folder.path(), &[&map[..], &["--accept-map-scale"]].concat());
     assert!(status == 0 && warned.matches("which was accepted").count() == 1, "{warned}");
-    assert!(accepted.contains("of 6561 posts"), "{accepted}");
+    assert!(accepted.contains("of 103041 nodes"), "{accepted}");
     if !has_gdal() {
         return;
     }

@@ -59,7 +59,7 @@ fn amount_file(text: &str) -> Result<AmountFile, String> {
 /// How fine the nodes of a map are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum NodeSpacing {
-    /// As fine as one hop wants.
+    /// So fine that one hop over level ground spans 8 nodes or more.
     Auto,
     /// At most this far apart, m.
     AtMostM(f64),
@@ -155,7 +155,7 @@ pub(crate) struct MapArgs {
     /// Land only on every N-th post; hops are always tested against the full DEM
     #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
     pub(crate) stride: u32,
-    /// Instead, nodes finer than posts: greatest spacing of neighbouring nodes, m, or auto: as fine as one hop wants, 8 nodes long
+    /// Instead, nodes finer than posts: neighbouring nodes at most D m apart, or auto: one hop over level ground spans 8 nodes or more
     /// [default: the scenario's, or posts]
     #[arg(long, value_name = "D|auto", value_parser = node_spacing, conflicts_with = "stride", allow_negative_numbers = true)]
     pub(crate) node_spacing_max_m: Option<NodeSpacing>,

@@ -29,7 +29,7 @@ pub struct MapQuestion<'a> {
     pub goals: Vec<NamedPlace>,
     /// Every `stride`-th post is a node of the map; 0 counts as 1. With a stride, `search.node_spacing_max_m` has no effect.
     pub stride: usize,
-    /// The lattice of nodes is as fine as one hop wants it, in place of `search.node_spacing_max_m`.
+    /// One hop over level ground spans 8 nodes or more, in place of `search.node_spacing_max_m`.
     pub auto_nodes: bool,
     /// Also the least effort, as the scenario names it, among paths of fewest hops.
     pub effort: bool,
