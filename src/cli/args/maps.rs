@@ -155,7 +155,7 @@ pub(crate) struct MapArgs {
     /// Land only on every N-th post; hops are always tested against the full DEM
     #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
     pub(crate) stride: u32,
-    /// Instead, nodes finer than posts: greatest spacing of neighbouring nodes, m, or auto: as fine as one hop wants, 8 nodes long
+    /// Instead, nodes finer than posts: auto, as fine as one hop wants, 8 nodes long, or the greatest spacing of neighbouring nodes, m
     /// [default: the scenario's, or posts]
     #[arg(long, value_name = "D|auto", value_parser = node_spacing, conflicts_with = "stride", allow_negative_numbers = true)]
     pub(crate) node_spacing_max_m: Option<NodeSpacing>,
