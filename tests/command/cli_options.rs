@@ -1186,6 +1186,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 "--plot-map",
                 "--pairs",
                 "--starts",
+                "--amount-output",
                 "--nearest-output",
                 "--predecessor-output",
                 "--effort-output",

@@ -91,8 +91,10 @@ pub(crate) fn documents() -> &'static [(String, String)] {
                  --set hopper.landing_speed_max_m_s=100 --set hopper.apex_height_max_m=5000";
             commands
                 .push(format!("fan ../shared/dem/lola_dem_north.tif --from-lonlat 10,85 --headings 6 --length 30000 {by_hops}"));
-            commands
-                .push(format!("map ../shared/dem/lola_dem_north.tif --start-lonlat 10,85 --goal-lonlat 20,84 --return --node-spacing-max-m 1600 {by_hops}"));
+            // The scenario's spacing of nodes is for posts of 2 m, not of 1 600 m.
+            commands.push(format!(
+                "map ../shared/dem/lola_dem_north.tif --start-lonlat 10,85 --goal-lonlat 20,84 --return --node-spacing-max-m 1600 {by_hops}"
+            ));
         }
         let written = |command: String| {
             let arguments: Vec<&str> = command.split_whitespace().chain(["--format", "json", "--quiet"]).collect();
