@@ -275,7 +275,9 @@ fn the_commands_of_the_document_run() {
             assert!(ran.stdout.contains(text), "{command}: {text:?} is missing in {}", ran.stdout);
         }
     }
-    for words in ["25 hops over 360 m", "27 over 349 m", "300 of 300 trials", "All but 50 of the 66 049 posts", "4.49 m/s", "1.2 m/s"] {
+    for words in
+        ["25 hops over 360 m", "27 over 349 m", "300 of 300 trials", "All but 50 of the 66 049 posts", "4.49 m/s", "1.2 m/s"]
+    {
         assert!(document.contains(words), "{words}");
     }
 }

@@ -46,5 +46,8 @@ fn schemas_are_listed_and_printed_and_an_unknown_one_is_refused() {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/schema").join(format!("{}.json", kind.name()));
         assert!(ran.status == 0 && ran.stdout == std::fs::read_to_string(file).unwrap(), "{}", kind.name());
     }
-    desk.refused(&["schema", "plam"], &["KIND: 'plam' is unknown, expected one of scenario, hop, check", "the nearest is plan"]);
+    desk.refused(
+        &["schema", "plam"],
+        &["KIND: 'plam' is unknown, expected one of scenario, hop, hop-mesh, check", "the nearest is plan"],
+    );
 }
