@@ -271,7 +271,7 @@ fn the_commands_of_the_document_run() {
         let warned = ran.stderr.lines().filter(|line| !line.starts_with("warning: a free route is searched by hops and effort"));
         assert_eq!((ran.status, warned.collect::<Vec<_>>()), (0, Vec::new()), "{command}");
         // What the document says of them.
-        for (of, text) in ANSWERS.iter().filter(|(of, _)| command.starts_with(of)) {
+        for (_, text) in ANSWERS.iter().filter(|(of, _)| command.starts_with(of)) {
             assert!(ran.stdout.contains(text), "{command}: {text:?} is missing in {}", ran.stdout);
         }
     }
