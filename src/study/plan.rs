@@ -24,7 +24,6 @@ use crate::{
     hop::HopTest,
     path::{Execution, HopPath, TooManyHops, Violation},
     progress::Progress,
-    quantity::MapPoint,
     report::{HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, path_geojson, write_path_csv},
     scenario::{Route, UncertaintyKeys},
 };
@@ -272,6 +271,8 @@ impl Planned {
     /// A free route from above.
     #[cfg(feature = "plot")]
     fn plan_view<'g>(&self, ground: &'g DemGround) -> Option<PlanView<'g>> {
+        use crate::quantity::MapPoint;
+
         let geometry = self.case.prepared.chain.geometry();
         let start = geometry.map_point(&self.ends.0)?;
         let landings = self.path.iter().flat_map(|path| &path.hops).filter_map(|hop| hop.landing.map());
