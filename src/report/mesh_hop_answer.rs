@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     BestRecord, BindingRecord,
     path_record::unsigned_zero,
-    text::{Sheet, choice_lines, place},
+    text::{LimitLine, Sheet, choice_lines, limit_table, place},
 };
 use crate::{
     ballistics::TakeoffChoice,
@@ -302,18 +302,17 @@ pub fn mesh_hop_text(answer: &MeshHopAnswer) -> String {
     if let MeshBindingRecord::Conflict { sentence, .. } = &answer.binding {
         sheet.line(format_args!("why: {sentence}"));
     }
-    let wide = answer.limits.iter().map(|limit| limit.name.name().len() + 1).fold(18, usize::max);
-    sheet.line(format_args!("\n{:<wide$}{:>14}{:>14}", "limit", "min (deg)", "max (deg)"));
-    for limit in &answer.limits {
-        let ends = match (limit.min_deg, limit.max_deg) {
-            (Some(min), Some(max)) => format!("{min:>14.6}{max:>14.6}"),
-            _ => format!("{:>14}{:>14}", "-", "-"),
-        };
-        let gap = limit.refused_deg.map(|[from, to]| format!("  but not between {from:.6} and {to:.6} deg")).unwrap_or_default();
+    let lines = answer.limits.iter().map(|limit| {
         let facet = limit.facet.map(|facet| format!("  (facet {})", facet.number)).unwrap_or_default();
         let refusal = limit.refusal.as_ref().map(|refusal| format!("  {refusal}")).unwrap_or_default();
-        sheet.line(format_args!("{:<wide$}{ends}{gap}{refusal}{facet}", limit.name));
-    }
+        LimitLine {
+            name: limit.name,
+            ends_deg: [limit.min_deg, limit.max_deg],
+            refused_deg: limit.refused_deg,
+            remark: refusal + &facet,
+        }
+    });
+    let wide = limit_table(&mut sheet, &lines.collect::<Vec<_>>());
     if answer.blocked.is_empty() {
         sheet.line(format_args!("\nno facet between the contacts blocks an arc"));
     } else {

@@ -11,6 +11,7 @@ use super::{
 use crate::{
     quantity::{format_number, unit_of},
     uncertainty::ESTIMATE_TRIALS,
+    world::Limit,
 };
 
 /// A sheet of text; writing to it does not fail.
@@ -66,21 +67,19 @@ pub fn hop_text(answer: &HopAnswer) -> String {
     } else {
         sheet.line(format_args!("{}", binding_line(&answer.binding)));
     }
-    // The longest name of a limit on the machine's speeds is longer than the column of the others.
-    let wide = answer.limits.iter().map(|limit| limit.name.name().len() + 1).fold(18, usize::max);
-    sheet.line(format_args!("\n{:<wide$}{:>14}{:>14}", "limit", "min (deg)", "max (deg)"));
-    for limit in &answer.limits {
-        let ends = match (limit.min_deg, limit.max_deg) {
-            (Some(min), Some(max)) => format!("{min:>14.6}{max:>14.6}"),
-            _ => format!("{:>14}{:>14}", "-", "-"),
-        };
+    let lines = answer.limits.iter().map(|limit| {
         let vertex = limit.vertex.map(|v| format!("  vertex {} at x = {} m", v.number, place(v.x_m)));
         let clearance = limit.clearance_x_m.map(|x_m| format!("  clearance at x = {} m", place(x_m)));
         let vertex = vertex.or(clearance).unwrap_or_default();
         let refusal = limit.refusal.as_ref().map(|r| format!("  {r}")).unwrap_or_default();
-        let gap = limit.refused_deg.map(|[from, to]| format!("  but not between {from:.6} and {to:.6} deg")).unwrap_or_default();
-        sheet.line(format_args!("{:<wide$}{ends}{gap}{vertex}{refusal}", limit.name));
-    }
+        LimitLine {
+            name: limit.name,
+            ends_deg: [limit.min_deg, limit.max_deg],
+            refused_deg: limit.refused_deg,
+            remark: vertex + &refusal,
+        }
+    });
+    limit_table(&mut sheet, &lines.collect::<Vec<_>>());
     choice_lines(&mut sheet, answer.best, &answer.choices);
     if let Some(margins) = answer.margins {
         sheet.line(format_args!("\nmargins of the chosen hop"));
@@ -120,6 +119,33 @@ pub fn hop_text(answer: &HopAnswer) -> String {
         ));
     }
     sheet.0
+}
+
+/// A line of the table of limits.
+pub(super) struct LimitLine {
+    pub(super) name: Limit,
+    /// The least and the greatest take-off angle; `None` if every arc is refused.
+    pub(super) ends_deg: [Option<f64>; 2],
+    /// Between these two, the angles that are refused.
+    pub(super) refused_deg: Option<[f64; 2]>,
+    /// What is said behind the angles.
+    pub(super) remark: String,
+}
+
+/// The take-off angles that each limit allows; returns the width of the column of names.
+pub(super) fn limit_table(sheet: &mut Sheet, lines: &[LimitLine]) -> usize {
+    // The longest name of a limit on the machine's speeds is longer than the column of the others.
+    let wide = lines.iter().map(|line| line.name.name().len() + 1).fold(18, usize::max);
+    sheet.line(format_args!("\n{:<wide$}{:>14}{:>14}", "limit", "min (deg)", "max (deg)"));
+    for LimitLine { name, ends_deg, refused_deg, remark } in lines {
+        let ends = match ends_deg {
+            [Some(min), Some(max)] => format!("{min:>14.6}{max:>14.6}"),
+            _ => format!("{:>14}{:>14}", "-", "-"),
+        };
+        let gap = refused_deg.map(|[from, to]| format!("  but not between {from:.6} and {to:.6} deg")).unwrap_or_default();
+        sheet.line(format_args!("{name:<wide$}{ends}{gap}{remark}"));
+    }
+    wide
 }
 
 /// The hops of all choices, with the chosen one marked.
