@@ -72,6 +72,7 @@ impl LeastAmounts {
             .with(Amount::Distance, run_m * SHAVED)
             .with(Amount::ArcLength, straight_m * SHAVED)
     }
+
     /// The bounds for one hop over a line of sight, whose least take-off speed is exact.
     ///
     /// # Examples

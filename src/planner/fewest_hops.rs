@@ -144,15 +144,9 @@ impl FewestHops {
         near: &mut Near,
     ) -> Result<(bool, u64), Cancelled> {
         let Some(at) = surface.position(node).filter(|at| within.holds(at, hops + 1)) else { return Ok((false, 0)) };
-        let (mut pairs, other) = (
-            0,
-            match side {
-                Side::Start => Side::Goal,
-                Side::Goal => Side::Start,
-            },
-        );
+        let mut pairs = 0;
         let mut waiting = std::mem::take(near);
-        for known in surface.about(&at, other).filter(|known| self.hops[known.index()] == hops) {
+        for known in surface.about(&at, side.other()).filter(|known| self.hops[known.index()] == hops) {
             let away2 = surface.nodes.map_point(known).map(|there| (there - at.at).norm_squared());
             waiting.extend(away2.map(|away2| Reverse((away2.to_bits(), known))));
         }

@@ -94,7 +94,7 @@ pub struct RouteWork {
 /// The result of a search, and its work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeRoute {
-    /// The best path within the budgets, and if there is none, the best without them; `None` if the goal was not reached over these nodes.
+    /// The best path within the budgets, or the best without budgets, if no path keeps them; `None` if the goal was not reached over these nodes.
     pub path: Option<RoutePath>,
     /// Whether it keeps the budgets.
     pub within: bool,
@@ -303,16 +303,24 @@ impl<'a> Asked<'a> {
             work.pairs_tested += legs.pairs();
             best = result.path.map(|path| (self.path(&legs, &path), path, Vec::new()));
         }
-        let within = best.is_some();
+        let mut within = best.is_some();
         if !within {
             let legs = self.legs((levels, Counted::All), question);
             let found = without_budgets(&legs, legs.ends(), objective, budgets, cap)?;
             work.pairs_tested += legs.pairs();
             best = found.map(|(path, unmet)| (self.path(&legs, &path), path, unmet));
         }
+        if best.is_none() {
+            // Labels of every path were left out: that of the fewest hops is a path all the same.
+            let legs = self.legs((levels, Counted::OfFewest), question);
+            let found = search(&legs, legs.ends(), &Objective::of(Amount::Hops), &Budgets::NONE, LabelCap::NONE)?.path;
+            work.pairs_tested += legs.pairs();
+            best = found.map(|path| (self.path(&legs, &path), path, Vec::new()));
+            within = best.as_ref().is_some_and(|(_, path, _)| budgets.exceeded_by(&path.totals).next().is_none());
+            capped = true;
+        }
         let (path, hops, unmet) = match best {
             Some((path, found, unmet)) => (Some(path), SurfaceLegs::hops_of(&found).collect(), unmet),
-            // Labels were left out, of a path that exists.
             None => (None, Vec::new(), Vec::new()),
         };
         Ok((FreeRoute { path, within, unmet, capped, nearest: self.goal.1, gap: None, work }, hops))

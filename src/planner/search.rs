@@ -66,6 +66,11 @@ pub struct LabelCap {
     pub in_all: usize,
 }
 
+impl LabelCap {
+    /// Every label is kept.
+    pub(super) const NONE: Self = Self { of_node: usize::MAX, in_all: usize::MAX };
+}
+
 impl Default for LabelCap {
     /// A node of a plan has hundreds at most; ten million labels are some 400 MB.
     fn default() -> Self {
@@ -96,7 +101,7 @@ pub struct FoundPath {
 /// The result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchResult {
-    /// The best path; `None` if there is none within the budgets.
+    /// The best path; `None` if no path keeps the budgets.
     pub path: Option<FoundPath>,
     /// Whether labels were left out because there were too many: the path may then not be the best, and `None` proves nothing.
     pub capped: bool,

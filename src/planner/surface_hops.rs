@@ -22,6 +22,16 @@ pub(super) enum Side {
     Goal,
 }
 
+impl Side {
+    /// The other end.
+    pub(super) const fn other(self) -> Self {
+        match self {
+            Self::Start => Self::Goal,
+            Self::Goal => Self::Start,
+        }
+    }
+}
+
 /// The feasible arcs of a hop.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Feasible {
@@ -73,7 +83,7 @@ impl<'s> SurfaceHops<'s> {
         self.reach.sight(self.ground, from, to)
     }
 
-    /// The hop from one node to another; `None` if there is none.
+    /// The hop from one node to another; `None` if no arc is feasible.
     ///
     /// A walk over the triangles, which equals the slice up to rounding; where the line may run along an edge between two facets, the slice.
     pub(super) fn between(

@@ -9,6 +9,7 @@ use super::{
 use crate::{
     ballistics::{PathBounds, TakeoffChoice},
     draw::Draw,
+    graph::Effort,
     ground::{DemGround, MapPosition},
     progress::{Cancelled, Meter, Stage},
     quantity::MapPoint,
@@ -174,4 +175,31 @@ fn fewest_hops_are_those_of_all_pairs_also_under_a_bound() {
         compared += 1;
     }
     assert!(compared > 10 && left_out > 100, "{compared} compared, {left_out} nodes left out");
+}
+
+/// A search that may keep hardly any label still answers with a path where one exists, and says that labels were left out.
+#[test]
+fn labels_that_were_left_out_are_no_reason_to_deny_a_path() {
+    let draw = &mut Draw::seeded(1735);
+    let (mut paths, mut capped) = (0, 0);
+    for case in 0..40 {
+        let Some((ground, nodes, [start, goal])) = world(draw, 5) else { continue };
+        let how = RouteGoal { start, goal, effort: Effort::Energy, takeoff: TakeoffChoice::LeastSpeed };
+        let whole = free_route(&ground, &nodes, &how, &()).unwrap();
+        let question = RouteQuestion {
+            objective: &Objective::of(Amount::Energy),
+            budgets: &Budgets::NONE,
+            commands: SearchedCommands::Distinct,
+            errors: None,
+            cap: LabelCap { of_node: 1, in_all: 2 },
+        };
+        let few = free_route_by(&ground, &nodes, &how, &question, &()).unwrap();
+        assert_eq!(few.path.is_some(), whole.path.is_some(), "case {case}");
+        if let Some(path) = &few.path {
+            assert!(few.within && path.places.first().is_some_and(|place| place.at == start), "case {case}");
+            paths += 1;
+            capped += u32::from(few.capped);
+        }
+    }
+    assert!(paths > 10 && capped > 5, "{paths} paths, {capped} with labels left out");
 }
