@@ -3,7 +3,8 @@
 use super::{
     Case, FreeRouteError, JourneyError,
     dem_ground::dem_ground,
-    nodes::{level_hop_of_m, nodes_per_post, post_spacing_m},
+    free_route::left_out,
+    nodes::{coarse_nodes, nodes_per_post, planned_level_hop_m, post_spacing_m},
 };
 use crate::{
     graph::PointSpacing,
@@ -21,6 +22,8 @@ const NODES_MOST: usize = 1 << 20;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct QuestionNodes {
     pub(super) record: QuestionRouteRecord,
+    /// How far a hop goes over level ground at most, at the value with the shortest hops, m.
+    level_hop_m: f64,
 }
 
 impl QuestionNodes {
@@ -48,7 +51,23 @@ impl QuestionNodes {
             node_spacing_m: lattice.spacing_m(),
             shortest_level_hop_m: (!is_given).then_some(level_hop_m),
         };
-        Ok(Some(Self { record }))
+        Ok(Some(Self { record, level_hop_m }))
+    }
+
+    /// What is to be known about the answer for a scenario of the question.
+    pub(super) fn warnings(&self, scenario: &Scenario) -> Vec<String> {
+        self.warnings_of(scenario, planned_level_hop_m(scenario), "the free route")
+    }
+
+    /// What is to be known about the answers for all values, of which this is one.
+    pub(super) fn warnings_of_all(&self, scenario: &Scenario) -> Vec<String> {
+        self.warnings_of(scenario, self.level_hop_m, "the free route (for the value with the shortest hops)")
+    }
+
+    fn warnings_of(&self, scenario: &Scenario, level_hop_m: f64, of: &str) -> Vec<String> {
+        let mut warnings = left_out(scenario);
+        warnings.extend(coarse_nodes(level_hop_m, of, self.record.node_spacing_m));
+        warnings
     }
 
     /// A scenario of the question, over these nodes.
@@ -58,13 +77,6 @@ impl QuestionNodes {
         }
         scenario
     }
-}
-
-/// How far a hop goes over level ground at most, by the speeds that planning may use, m.
-fn planned_level_hop_m(scenario: &Scenario) -> f64 {
-    let derated = scenario.derated();
-    let Scenario { hopper, body, .. } = derated.as_ref().unwrap_or(scenario);
-    level_hop_of_m(&hopper.with_any_command(), body.gravity.m_s2())
 }
 
 /// The lattice with at most so many nodes a post spacing, and at most [`NODES_MOST`] in all, down to the posts.

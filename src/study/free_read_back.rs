@@ -47,5 +47,5 @@ pub(super) fn unrolled_along(case: &Case, rows: &[HopRecord]) -> Result<Case, Re
     {
         return Err(ReadBackError::OtherEnds { found: [first.at, last.at], asked: [start, goal] });
     }
-    Ok(unrolled(case, &places)?.asked_by(case))
+    Ok(unrolled(case, &places)?)
 }

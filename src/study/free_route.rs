@@ -134,7 +134,7 @@ impl FreeSearch {
 
     /// A path on its unrolled chain, with the commands that the search chose.
     pub(super) fn laid(&self, path: &RoutePath, commands: SearchedCommands) -> Result<Laid, JourneyError> {
-        let case = unrolled(&self.case, &path.places)?.asked_by(&self.case);
+        let case = unrolled(&self.case, &path.places)?;
         let test = case.hop_test();
         let choices = (commands == SearchedCommands::Distinct).then_some(path.choices.as_slice());
         let legs = legs(&test, &path.places, choices)?;
@@ -167,7 +167,7 @@ impl FreeSearch {
     fn warnings(&self, path: Option<&RoutePath>) -> Vec<String> {
         let scenario = &self.case.scenario;
         let mut warnings = left_out(scenario);
-        warnings.extend(coarse_nodes(&self.ground, "the free route", self.nodes.lattice().spacing_m()));
+        warnings.extend(coarse_nodes(level_hop_m(&self.ground), "the free route", self.nodes.lattice().spacing_m()));
         if scenario.plans_by_objective() {
             #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
             let spanned =
@@ -224,10 +224,9 @@ pub(super) fn found_route(case: &Case, progress: &dyn Progress) -> Result<FoundR
         let check = checked(&test, &ends, &found);
         return Ok(FoundRoute { test, ends, found, check, path: None, warnings, case: search.case });
     };
-    let mut laid = search.laid(found_path, case.scenario.commands)?;
-    let legs = std::mem::take(&mut laid.legs);
-    let (legs, cost) = commanded(&laid.case, &laid.test, (legs, found_path.cost))?;
-    let Unrolled { case: unrolled, test, legs, ends, path } = search.flown(Laid { legs, ..laid })?;
+    let Laid { case: unrolled, test, legs } = search.laid(found_path, case.scenario.commands)?;
+    let (legs, cost) = commanded(&unrolled, &test, (legs, found_path.cost))?;
+    let Unrolled { case: unrolled, test, legs, ends, path } = search.flown(Laid { case: unrolled, test, legs })?;
     warnings.extend(path.iter().flat_map(|path| case.scenario.path_warnings(path)));
     let found = answer(Outcome::Path { legs, cost });
     let check = checked(&test, &ends, &found).with_path(path.as_ref());
@@ -235,7 +234,7 @@ pub(super) fn found_route(case: &Case, progress: &dyn Progress) -> Result<FoundR
 }
 
 /// What a free route leaves out of a scenario.
-fn left_out(scenario: &Scenario) -> Vec<String> {
+pub(super) fn left_out(scenario: &Scenario) -> Vec<String> {
     let mut warnings = Vec::new();
     if scenario.uncertainty.is_some() && scenario.risk != ReliabilityUse::Ignored && !scenario.plans_by_objective() {
         let commands = if scenario.search.takeoff == TakeoffChoice::MostReliable {
@@ -325,7 +324,7 @@ pub(super) fn unrolled(case: &Case, places: &[MapPosition]) -> Result<Case, Case
         goal_x_m: None,
         ..case.scenario.clone()
     };
-    Case::new(scenario, Path::new(&case.base), Commands::Exact)
+    Ok(Case::new(scenario, Path::new(&case.base), Commands::Exact)?.asked_by(case))
 }
 
 /// One leg from each place to the next, along the unrolled chain, with the commands of these choices, or of the one of all hops.

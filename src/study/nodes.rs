@@ -4,6 +4,7 @@ use crate::{
     graph::PointSpacing,
     ground::{DemGround, Surface},
     planner::NodesPerPost,
+    scenario::Scenario,
     terrain::Dem,
     world::Hopper,
 };
@@ -34,13 +35,20 @@ pub(super) fn nodes_per_post(spacing: Option<PointSpacing>, dem: &Dem, level_hop
     }
 }
 
-/// A warning where one hop spans few nodes.
+/// How far a hop goes over level ground at most, by the speeds that planning may use, m.
+pub(super) fn planned_level_hop_m(scenario: &Scenario) -> f64 {
+    let derated = scenario.derated();
+    let Scenario { hopper, body, .. } = derated.as_ref().unwrap_or(scenario);
+    level_hop_of_m(&hopper.with_any_command(), body.gravity.m_s2())
+}
+
+/// A warning where one hop, so long over level ground, spans few nodes.
 ///
 /// # Arguments
 /// `of`: what the nodes belong to, such as `the map`.
-pub(super) fn coarse_nodes(ground: &DemGround, of: &str, node_spacing_m: f64) -> Option<String> {
+pub(super) fn coarse_nodes(level_hop_m: f64, of: &str, node_spacing_m: f64) -> Option<String> {
     const FEW: f64 = 8.0;
-    let spans = level_hop_m(ground) / node_spacing_m;
+    let spans = level_hop_m / node_spacing_m;
     (spans < FEW).then(|| {
         format!(
             "one hop over level ground spans {spans:.1} nodes of {of}, {node_spacing_m} m apart, fewer than 8: a smaller \

@@ -271,7 +271,9 @@ impl Question<'_> {
     pub(super) fn required(&self, shown: Case, value: f64, answer: RequireAnswer) -> Required {
         let Self { variation, requirement, .. } = self;
         let shown_entries = requirement.with_value(&variation.entries, value);
-        Required { shown, shown_entries, answer, warnings: variation.first.prepared.warnings.clone() }
+        let mut warnings = variation.first.prepared.warnings.clone();
+        warnings.extend(self.nodes.iter().flat_map(|nodes| nodes.warnings(&shown.scenario)));
+        Required { shown, shown_entries, answer, warnings }
     }
 }
 
@@ -328,7 +330,8 @@ pub struct Required {
     pub shown_entries: Entries,
     /// The answer as plain data.
     pub answer: RequireAnswer,
-    /// The warnings about the most capable value: a speed limit beyond escape is only among these.
+    /// The warnings about the most capable value, since a speed limit beyond escape is only among these, and about the free route of the
+    /// value that is shown.
     pub warnings: Vec<String>,
 }
 

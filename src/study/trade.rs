@@ -164,6 +164,8 @@ pub struct TradedCells {
     pub answer: TradeAnswer,
     /// The cells without an answer: which row, and the reason.
     pub failed: Vec<(usize, CellError)>,
+    /// The warnings about free routes.
+    pub route_warnings: Vec<String>,
 }
 
 impl SweptKey {
@@ -374,7 +376,10 @@ impl<'a> Trade<'a> {
             }));
         }
         let vary = self.swept.iter().map(|v| SweptKeyRecord { key: v.key.path(), values: v.values.clone() }).collect();
-        Ok(TradedCells { answer: TradeAnswer { vary, route: nodes.map(|nodes| nodes.record), rows }, failed })
+        let first = (0..self.cells()).find_map(|cell| self.scenario(&self.at(cell)).ok());
+        let route_warnings = nodes.zip(first).map(|(nodes, first)| nodes.warnings_of_all(&first)).unwrap_or_default();
+        let answer = TradeAnswer { vary, route: nodes.map(|nodes| nodes.record), rows };
+        Ok(TradedCells { answer, failed, route_warnings })
     }
 
     /// Reads the whole raster where trials over it estimate a success, so that the cells, which are answered side by side, find it read. What is

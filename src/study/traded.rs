@@ -46,9 +46,10 @@ pub fn trade(
         along_transect(&variation.first.scenario, "bounds that hold at any resolution are proved")?;
     }
     let trade = Trade::new(&variation.entries, variation.base(), &variation.survey, swept)?;
-    let TradedCells { answer, failed } = trade.run(proof.map(|proof| proof.budget_cells), progress)?;
+    let TradedCells { answer, failed, route_warnings } = trade.run(proof.map(|proof| proof.budget_cells), progress)?;
     let first = variation.first.clone();
     let mut warnings = answer.warnings();
+    warnings.extend(route_warnings);
     // Where the shares are varied, the rows have them.
     let shares_vary = swept.iter().any(|key| key.key().table == "derating");
     let derating = DeratingRecord::of(&first.scenario.derating).filter(|_| !shares_vary);

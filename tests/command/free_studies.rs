@@ -247,6 +247,13 @@ fn a_trade_of_free_routes_has_the_plans_over_the_same_nodes() {
     assert!(desk.read("trade.svg").contains("<svg") && desk.read("trade.csv").lines().count() == 5);
     let text = desk.run(&args[..4]).stdout;
     assert!(text.contains("over the same nodes for all values"), "{text}");
+    // Hops of the slowest machine span few of the coarsest nodes, which the plan of that cell says too.
+    let coarse = [&args[..4], &["--node-spacing-max-m", "1"]].concat();
+    let warned = desk.run(&coarse).stderr;
+    assert!(
+        warned.contains("1.4 nodes of the free route (for the value with the shortest hops), 1 m apart, fewer than 8"),
+        "{warned}"
+    );
     // A cell that cannot be searched has a row with its error; the others have their answers.
     let spacings = desk.json(&["trade", "free.toml", "--vary", "search.node_spacing_max_m=0.00001:0.5:2"]);
     let rows = spacings["rows"].as_array().expect("rows");

@@ -11,6 +11,7 @@ use crate::cli::{
     effects::Purpose,
     inputs,
     load::load_to_vary,
+    output,
     progress::Progress,
     threads,
     views::show,
@@ -27,13 +28,16 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     })?;
     to_vary.first.ends()?;
     let required = require(&to_vary.variation, &requirement, &Progress::new(args.common.quiet));
-    let Required { shown, shown_entries, answer, .. } = required.map_err(|error| match error {
+    let Required { shown, shown_entries, answer, warnings } = required.map_err(|error| match error {
         RequireError::Scenario { problems } => to_vary.refused(problems),
         other => other.into(),
     })?;
-    // The warnings are those of the shown value and of the strongest one: a speed limit beyond escape is only in the latter.
-    let strongest = &to_vary.first.case.prepared.warnings;
-    let json = || to_vary.loaded(shown, &shown_entries)?.document(DocumentKind::Require, strongest, &answer);
+    // The warnings are those of the shown value and of the strongest one, which were shown when it was loaded: a speed limit beyond escape is
+    // only in the latter.
+    let known = &to_vary.first.case.prepared.warnings;
+    let new: Vec<String> = warnings.iter().filter(|warning| !known.contains(warning)).cloned().collect();
+    output::warn_all(args.common.quiet, &new);
+    let json = || to_vary.loaded(shown, &shown_entries)?.document(DocumentKind::Require, &warnings, &answer);
     show(args.answer.format, || require_text(&answer), json)?;
     Ok(Answer::of(answer.reachable_at.is_some()))
 }

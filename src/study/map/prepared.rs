@@ -142,7 +142,8 @@ impl MapQuestion<'_> {
     /// Warnings where one hop spans few nodes, and where a stride takes the place of a spacing.
     fn node_warnings(&self, ground: &DemGround, lattice: NodeLattice) -> Vec<String> {
         let nodes = lattice.map(ground.terrain().dem().georeference());
-        let mut warnings: Vec<String> = coarse_nodes(ground, "the map", nodes.dx_m().max(nodes.dy_m())).into_iter().collect();
+        let mut warnings: Vec<String> =
+            coarse_nodes(level_hop_m(ground), "the map", nodes.dx_m().max(nodes.dy_m())).into_iter().collect();
         if self.stride > 1
             && let Some(PointSpacing::AtMostM(spacing_m)) = self.scenario.search.spacing
         {
