@@ -339,7 +339,7 @@ mod tests {
         DemGround::new(OverlaidDem::new(dem, Overlays::default()), &hopper, Gravity::new(1.62).unwrap(), &surface)
     }
 
-    /// The corridor of a line over the middle of a ground; `None` where there is none.
+    /// The corridor of a line over the middle of a ground; `None` if the line crosses missing elevations, or the ground has no corridor.
     fn corridor(ground: &DemGround, beside: Beside, extra: u32) -> Option<Corridor> {
         let chain = ground.chain(MapPoint::new(4.2, 12.3), MapPoint::new(18.4, 11.1)).ok()?;
         let last = VertexId(chain.geometry().segment_count());

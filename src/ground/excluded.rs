@@ -45,7 +45,7 @@ impl GreatestSpeeds {
     }
 }
 
-/// The slopes of the directions ahead that a friction cone about the normal of a facet leaves; `None` if there are none.
+/// The slopes of the directions ahead that a friction cone about the normal of a facet leaves; `None` if it leaves no direction.
 ///
 /// ```text
 ///     s   slope of the facet along the heading,  t   tangent of its cross-slope,  T   tangent of the half-angle of the cone in the plane of

@@ -110,7 +110,7 @@ impl RouteRecord {
     pub(super) fn nearest(&self) -> Vec<String> {
         let place = |[x_m, y_m, _]: [f64; 3]| format!("({x_m:.3}, {y_m:.3}) m");
         let mut said = vec![format!(
-            "the reached place nearest to the goal is {}; more nodes may find a path: this is no proof that there is none",
+            "the reached place nearest to the goal is {}; more nodes may find a path: this does not prove that no path exists",
             place(self.nearest_m)
         )];
         let Some(gap) = &self.gap else { return said };

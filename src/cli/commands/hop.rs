@@ -22,7 +22,7 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
     if let Some(input) = load_mesh_hop(&args.terrain, &args.common, ends)? {
         return over_mesh(args, &input);
     }
-    refuse("--plot", args.plot.is_some(), "is drawn of a hop over a mesh, and this terrain is none: leave it away")?;
+    refuse("--plot", args.plot.is_some(), "draws a hop over a mesh, and this terrain is not a mesh: leave the option out")?;
     let loaded = load_hop(&args.terrain, &args.common, ends)?;
     loaded.ends()?;
     let hopped = hop(&loaded.case)?;
@@ -41,7 +41,7 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
 /// Tests one hop over a mesh.
 fn over_mesh(args: &HopArgs, input: &MeshHopInput) -> Result<Answer, Failure> {
     let trajectory = args.trajectory.trajectory.is_some();
-    refuse("--trajectory", trajectory, "is written of hops along a profile, and this terrain is a mesh: leave it away")?;
+    refuse("--trajectory", trajectory, "writes hops along a profile, and this terrain is a mesh: leave the option out")?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let MeshHopInput { mesh, scale, ends_m, scenario, .. } = input;
     let question = MeshHopQuestion { scenario, mesh, scale: *scale, ends_m: *ends_m };

@@ -157,7 +157,7 @@ impl MeshTakeoffSet {
         &self.windows
     }
 
-    /// Why there are none; `None` if there are some.
+    /// Why no window is left; `None` if one is.
     pub const fn conflict(&self) -> Option<MeshConflict> {
         self.conflict
     }
