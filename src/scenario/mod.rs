@@ -13,6 +13,7 @@ mod propulsion;
 mod read;
 mod route;
 mod schema;
+mod terrain_source;
 mod trials;
 
 pub use budget::Budget;
@@ -22,7 +23,8 @@ pub use entries::{Entries, Place};
 pub(crate) use entries::{fits, nearest_key};
 pub use file_kind::FileKind;
 pub use problem::{KeyPath, ProblemKind, ScenarioProblem, ScenarioProblems};
-pub use read::{BodyChoice, LackingKey, Scenario, TerrainSource};
+pub use read::{BodyChoice, LackingKey, Scenario};
 pub use route::Route;
 pub use schema::scenario_schema;
+pub use terrain_source::TerrainSource;
 pub use trials::UncertaintyKeys;

@@ -5,8 +5,12 @@ use std::{collections::BTreeMap, ops::ControlFlow, path::Path};
 use rayon::prelude::*;
 
 use super::{
-    Case, CaseError, Commands, JourneyError, PipelineError, Survey, ask_the_same, free_nodes::QuestionNodes, journey,
-    physics::escape_warnings, trade_free::free_row,
+    Case, CaseError, Commands, JourneyError, PipelineError, Survey, ask_the_same,
+    free_nodes::QuestionNodes,
+    journey,
+    physics::escape_warnings,
+    swept_key::{SweptKey, typed},
+    trade_free::free_row,
 };
 use crate::{
     chain::Station,
@@ -19,15 +23,8 @@ use crate::{
     path::HopPath,
     progress::{Cancelled, Detail, Meter, Progress, Stage, Step},
     report::{EffortRecord, MarginsRecord, ObjectiveRecord, SweptKeyRecord, TotalsRecord, TradeAnswer, TradeRow},
-    scenario::{Entries, Key, Kind, Route, Scenario, ScenarioProblem, fits, nearest_key},
+    scenario::{Entries, Route, Scenario, ScenarioProblem},
 };
-
-/// A swept key of the scenario, and its values.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SweptKey {
-    key: &'static Key,
-    values: Vec<f64>,
-}
 
 /// The reasons why a trade cannot be computed.
 #[derive(Debug, thiserror::Error)]
@@ -168,99 +165,6 @@ pub struct TradedCells {
     pub route_warnings: Vec<String>,
 }
 
-impl SweptKey {
-    /// The most values of one key.
-    pub const MOST: usize = 1000;
-
-    /// Reads `TABLE.KEY=FROM:TO:STEPS`: STEPS values, evenly spaced from FROM to TO, both included.
-    ///
-    /// # Errors
-    /// [`TradeError`], in one sentence that begins with the key.
-    ///
-    /// # Examples
-    /// ```
-    /// use chta::study::SweptKey;
-    /// let speeds = SweptKey::parse("hopper.takeoff_speed_max_m_s=4:10:7").unwrap();
-    /// assert_eq!(speeds.values(), [4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0]);
-    /// assert!(SweptKey::parse("hopper.takeof_speed_max_m_s=4:10:7").unwrap_err().to_string().contains("hopper.takeoff_speed_max_m_s"));
-    /// ```
-    pub fn parse(text: &str) -> Result<Self, TradeError> {
-        let (path, range) = text.split_once('=').unwrap_or((text, ""));
-        let path = path.trim().to_owned();
-        let (table, name) = path.split_once('.').unwrap_or(("", &path));
-        let Some(key) = Key::find(table, name) else {
-            return Err(TradeError::UnknownKey { nearest: nearest_key(table, name), path });
-        };
-        if !matches!(key.kind, Kind::Number { .. } | Kind::AngleOrUnlimited | Kind::CountOrAuto) {
-            return Err(TradeError::NotANumber { path, expected: key.kind.expected() });
-        }
-        let malformed = || TradeError::Malformed { path: path.clone(), found: range.to_owned() };
-        let parts: Vec<&str> = range.split(':').map(str::trim).collect();
-        let [from, to, steps] = parts.as_slice() else { return Err(malformed()) };
-        let number = |text: &str| text.parse::<f64>().map_err(|_| malformed());
-        let (from, to) = (number(from)?, number(to)?);
-        if number(steps)?.is_nan() {
-            return Err(malformed());
-        }
-        let Some(steps) = steps.parse().ok().filter(|steps| (2..=Self::MOST).contains(steps)) else {
-            return Err(TradeError::Steps { path, found: (*steps).to_owned() });
-        };
-        if !(from.is_finite() && to.is_finite() && from < to) {
-            return Err(TradeError::Range { path, from, to });
-        }
-        let values = spread(from, to, steps);
-        if let Some(&value) = values.iter().find(|&&value| !fits(&typed(key, value), key.kind)) {
-            return Err(TradeError::Value { path, value, expected: key.kind.expected() });
-        }
-        Ok(Self { key, values })
-    }
-
-    /// The key.
-    pub const fn key(&self) -> &'static Key {
-        self.key
-    }
-
-    /// The values, in ascending order.
-    pub fn values(&self) -> &[f64] {
-        &self.values
-    }
-}
-
-/// The given number of evenly spaced values from one to another. Those between are rounded to the twelfth digit of the greater end,
-/// so that steps of a tenth are written as tenths.
-#[expect(clippy::cast_precision_loss, reason = "at most a thousand values")]
-fn spread(from: f64, to: f64, steps: usize) -> Vec<f64> {
-    let last = (steps - 1) as f64;
-    let scale = from.abs().max(to.abs());
-    let decimals = (12.0 - libm::ceil(libm::log10(scale))).clamp(0.0, 17.0);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 17")]
-    let decimals = decimals as usize;
-    let between = |i: usize| {
-        let value = from + (to - from) * (i as f64 / last);
-        format!("{value:.decimals$}").parse().unwrap_or(value).clamp(from, to)
-    };
-    (0..steps)
-        .map(|i| {
-            if i == 0 {
-                from
-            } else if i + 1 == steps {
-                to
-            } else {
-                between(i)
-            }
-        })
-        .collect()
-}
-
-/// A value in the type that the scenario's key takes.
-fn typed(key: &Key, value: f64) -> toml::Value {
-    match key.kind {
-        #[expect(clippy::cast_possible_truncation, reason = "whole and within the range of counts, or refused as it is")]
-        Kind::CountOrAuto if value.fract() == 0.0 && value.abs() < 1e9 => toml::Value::Integer(value as i64),
-        _ => toml::Value::Float(value),
-    }
-}
-
 /// The answer for one pair of ends: the verdict, the hops and, with a proof, the lower bound of the hops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Varied {
@@ -375,7 +279,7 @@ impl<'a> Trade<'a> {
                 row
             }));
         }
-        let vary = self.swept.iter().map(|v| SweptKeyRecord { key: v.key.path(), values: v.values.clone() }).collect();
+        let vary = self.swept.iter().map(|v| SweptKeyRecord { key: v.key().path(), values: v.values().to_vec() }).collect();
         let first = (0..self.cells()).find_map(|cell| self.scenario(&self.at(cell)).ok());
         let route_warnings = nodes.zip(first).map(|(nodes, first)| nodes.warnings_of_all(&first)).unwrap_or_default();
         let answer = TradeAnswer { vary, route: nodes.map(|nodes| nodes.record), rows };
@@ -398,7 +302,11 @@ impl<'a> Trade<'a> {
 
     /// The nodes of free routes, the same for all cells; `None` along a transect, and where their spacing is varied.
     fn question_nodes(&self) -> Option<QuestionNodes> {
-        if self.swept.iter().any(|v| v.key.table == "search" && matches!(v.key.name, "node_spacing_max_m" | "points_per_segment")) {
+        if self
+            .swept
+            .iter()
+            .any(|v| v.key().table == "search" && matches!(v.key().name, "node_spacing_max_m" | "points_per_segment"))
+        {
             return None;
         }
         // Without a case that can be prepared, every cell says why.
@@ -409,7 +317,7 @@ impl<'a> Trade<'a> {
 
     /// The values of a cell by their keys.
     fn named(&self, values: &[f64]) -> BTreeMap<String, f64> {
-        self.swept.iter().map(|v| v.key.path()).zip(values.iter().copied()).collect()
+        self.swept.iter().map(|v| v.key().path()).zip(values.iter().copied()).collect()
     }
 
     /// The values of a cell, from its number.
@@ -426,7 +334,7 @@ impl<'a> Trade<'a> {
     fn case(&self, values: &[f64]) -> Result<Case, CellError> {
         let scenario = self.scenario(values)?;
         // The one number that changes how the terrain is read.
-        let rereads = self.swept.iter().any(|v| (v.key.table, v.key.name) == ("terrain", "mesh_scale"));
+        let rereads = self.swept.iter().any(|v| (v.key().table, v.key().name) == ("terrain", "mesh_scale"));
         let reread = scenario.terrain.as_ref().filter(|_| rereads).map(|source| Survey::of(&scenario, source, self.base));
         let reread = reread.transpose()?;
         Ok(Case::over(reread.as_ref().unwrap_or(self.survey), scenario, self.base, Commands::OfTheMachine)?)
@@ -503,10 +411,10 @@ impl<'a> Trade<'a> {
     /// Whether any answer depends on a key: neighbouring cells along it are compared until two differ.
     fn check_effect(&self, axis: usize, meter: &Meter<'_>) -> Result<(), TradeError> {
         let own = &self.swept[axis];
-        let across: &[f64] = self.swept.iter().enumerate().find(|(i, _)| *i != axis).map_or(&[0.0], |(_, v)| &v.values);
+        let across: &[f64] = self.swept.iter().enumerate().find(|(i, _)| *i != axis).map_or(&[0.0], |(_, v)| v.values());
         for &other in across {
             let mut before = None;
-            for &value in &own.values {
+            for &value in own.values() {
                 let values = match (self.swept.len(), axis) {
                     (1, _) => vec![value],
                     (_, 0) => vec![value, other],
@@ -521,8 +429,8 @@ impl<'a> Trade<'a> {
                 before = Some((scenario, prepared));
             }
         }
-        let (from, to) = (own.values[0], own.values[own.values.len() - 1]);
-        Err(TradeError::NoEffect { path: own.key.path(), from, to })
+        let (from, to) = (own.values()[0], own.values()[own.values().len() - 1]);
+        Err(TradeError::NoEffect { path: own.key().path(), from, to })
     }
 }
 
@@ -534,7 +442,7 @@ impl Trade<'_> {
     /// As [`Trade::new`].
     pub fn first_cell(entries: &Entries, swept: &[SweptKey], given_by: &str) -> Result<Entries, TradeError> {
         checked(swept)?;
-        let first: Vec<f64> = swept.iter().filter_map(|v| v.values.first().copied()).collect();
+        let first: Vec<f64> = swept.iter().filter_map(|v| v.values().first().copied()).collect();
         Ok(varied(entries, swept, &first, given_by))
     }
 
@@ -556,10 +464,10 @@ impl Trade<'_> {
 /// The values of a cell, from its number.
 fn at(swept: &[SweptKey], cell: usize) -> Vec<f64> {
     match swept {
-        [one] => vec![one.values[cell]],
+        [one] => vec![one.values()[cell]],
         [first, second] => {
-            let across = second.values.len();
-            vec![first.values[cell / across], second.values[cell % across]]
+            let across = second.values().len();
+            vec![first.values()[cell / across], second.values()[cell % across]]
         }
         _ => Vec::new(),
     }
@@ -568,7 +476,7 @@ fn at(swept: &[SweptKey], cell: usize) -> Vec<f64> {
 /// Checks for one key or two different ones, and not too many cells.
 fn checked(swept: &[SweptKey]) -> Result<(), TradeError> {
     match swept {
-        [first, second] if first.key == second.key => return Err(TradeError::Twice { path: first.key.path() }),
+        [first, second] if first.key() == second.key() => return Err(TradeError::Twice { path: first.key().path() }),
         [_] | [_, _] => {}
         _ => return Err(TradeError::Count { found: swept.len() }),
     }
@@ -579,13 +487,14 @@ fn checked(swept: &[SweptKey]) -> Result<(), TradeError> {
 }
 
 fn cells(swept: &[SweptKey]) -> usize {
-    swept.iter().map(|v| v.values.len()).product()
+    swept.iter().map(|v| v.values().len()).product()
 }
 
 /// The keys with these values set.
 fn varied(entries: &Entries, swept: &[SweptKey], values: &[f64], given_by: &str) -> Entries {
     let mut entries = entries.clone();
-    for (SweptKey { key, .. }, &value) in swept.iter().zip(values) {
+    for (v, &value) in swept.iter().zip(values) {
+        let key = v.key();
         entries.set_by_option(&format!("{given_by} {}", key.path()), key.table, key.name, typed(key, value));
     }
     entries
@@ -594,32 +503,4 @@ fn varied(entries: &Entries, swept: &[SweptKey], values: &[f64], given_by: &str)
 /// Problems in one sentence.
 fn sentences(problems: &[ScenarioProblem]) -> String {
     problems.iter().map(|problem| format!("{}; {}", problem.message, problem.help)).collect::<Vec<_>>().join("; ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scenario::CATALOGUE;
-
-    #[test]
-    fn intermediate_values_are_rounded_to_the_usual_notation() {
-        assert_eq!(spread(0.1, 0.7, 7), [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]);
-        assert_eq!(spread(-1.0, 1.0, 3), [-1.0, 0.0, 1.0]);
-        assert_eq!(spread(0.000_02, 0.000_08, 4), [0.000_02, 0.000_04, 0.000_06, 0.000_08]);
-        let thirds = spread(0.0, 1.0, 4);
-        assert!((thirds[1] - 1.0 / 3.0).abs() < 1e-11, "{thirds:?}");
-        assert!(spread(1e9, 1e9 + 1e-3, 5).windows(2).all(|pair| pair[0] <= pair[1]));
-    }
-
-    #[test]
-    fn every_key_that_takes_a_number_can_be_varied_and_no_other() {
-        for key in &CATALOGUE {
-            // A share is at most 1.
-            let range = if matches!(key.kind, Kind::Number { max, .. } if max < 3.0) { "0.25:0.75:3" } else { "1:3:3" };
-            let text = format!("{}={range}", key.path());
-            let parsed = SweptKey::parse(&text);
-            let number = matches!(key.kind, Kind::Number { .. } | Kind::AngleOrUnlimited | Kind::CountOrAuto);
-            assert_eq!(parsed.is_ok(), number, "{text}: {parsed:?}");
-        }
-    }
 }
