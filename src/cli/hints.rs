@@ -80,7 +80,8 @@ pub(crate) fn of_problem(problem: &ScenarioProblem) -> &'static str {
 
 /// How to get a stronger answer, by the options of the command that was called or else of another one.
 pub(crate) fn further_means() -> FurtherMeans<'static> {
-    FurtherMeans { budget: "--prove-cells-max", proof: if takes("prove") { "--prove" } else { "chta check --prove" } }
+    let proof = if takes("prove") { "--prove" } else { "chta check --prove" };
+    FurtherMeans { budget: "--prove-cells-max", proof, requirement: "chta require SCENARIO --vary" }
 }
 
 /// The error that the error of a study wraps.
@@ -287,8 +288,8 @@ mod tests {
                 assert!(offers(command, option), "{command} has no --{option}");
             }
         }
-        let FurtherMeans { budget, proof } = further_means();
-        for (command, option) in [budget, proof].into_iter().flat_map(|words| options(words, "check")) {
+        let FurtherMeans { budget, proof, requirement } = further_means();
+        for (command, option) in [budget, proof, requirement].into_iter().flat_map(|words| options(words, "check")) {
             assert!(offers(command, option), "{command} has no --{option}");
         }
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use chta::study::{
-    CaseError, CheckError, ExperimentError, HopError, JourneyError, PlanError, RequireError, SimulateError, TradeError,
+    CaseError, CheckError, ExperimentError, FreeRouteError, HopError, JourneyError, PlanError, RequireError, SimulateError, TradeError,
 };
 
 use super::{Failure, hints};
@@ -21,6 +21,10 @@ impl From<JourneyError> for Failure {
     fn from(error: JourneyError) -> Self {
         match error {
             JourneyError::Case(error) => error.into(),
+            JourneyError::Free(error @ FreeRouteError::TooMuchMemory { needed_bytes, .. }) => Self::message(format!(
+                "--memory-max-mib: {error}; the options for that: --node-spacing-max-m, or --memory-max-mib {}",
+                needed_bytes.div_ceil(1 << 20)
+            )),
             other => Self::of(&other),
         }
     }

@@ -55,6 +55,11 @@ impl HopReach {
         self.run_over_m(from.z_m - self.lowest_m)
     }
 
+    /// The same for hops from anywhere.
+    pub(crate) fn longest_m(&self) -> f64 {
+        self.run_over_m(self.highest_m - self.lowest_m)
+    }
+
     /// The same for hops to a position.
     pub(crate) fn run_into_m(&self, to: &MapPosition) -> f64 {
         self.run_over_m(self.highest_m - to.z_m)

@@ -209,6 +209,13 @@ impl FreeRoute {
     pub const fn bytes(nodes: &SurfaceNodes) -> u64 {
         8 * nodes.count() as u64
     }
+
+    /// The same with what one level of the search for the fewest hops takes at most: all nodes as those of the level before, as those that it
+    /// asks, and with what each of them answers.
+    pub const fn bytes_max(nodes: &SurfaceNodes) -> u64 {
+        let of_level = (2 * size_of::<SurfaceNode>() + size_of::<(bool, u64)>()) as u64;
+        Self::bytes(nodes) + of_level * nodes.count() as u64
+    }
 }
 
 /// The hops over the nodes, and the ends of a question.

@@ -45,7 +45,7 @@ impl Tracked {
     }
 
     /// How many amounts they are.
-    const fn len(&self) -> usize {
+    pub(super) const fn len(&self) -> usize {
         self.amounts.len()
     }
 }
@@ -93,6 +93,11 @@ impl Labels {
             most_of_node,
             capped: false,
         }
+    }
+
+    /// The bytes that one label of so many tracked amounts takes in vectors that double their size, while one of them grows.
+    pub(super) const fn bytes_per_label(amounts: usize) -> usize {
+        3 * (amounts * size_of::<f64>() + size_of::<Origin>() + size_of::<u32>() + size_of::<bool>())
     }
 
     /// How many labels were made.

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use super::SurfaceLattice;
 use crate::{
-    ground::{DemGround, MapPosition},
+    ground::{DemGround, HopReach, MapPosition},
     quantity::MapPoint,
 };
 
@@ -92,6 +92,13 @@ impl SurfaceNodes {
     /// How many there are.
     pub const fn count(&self) -> usize {
         self.lattice.count() + self.places.len()
+    }
+
+    /// No more pairs of nodes than these are no farther apart than a hop over a ground may be by its speeds.
+    pub fn pairs_max(&self, ground: &DemGround) -> u64 {
+        let (down, aside) = self.lattice.cells_within(HopReach::of(ground).longest_m());
+        let about = (2 * down + 1).saturating_mul(2 * aside + 1).saturating_add(self.places.len()).min(self.count());
+        (self.count() as u64).saturating_mul(about as u64)
     }
 
     /// The lattice.

@@ -69,6 +69,11 @@ pub struct LabelCap {
 impl LabelCap {
     /// Every label is kept.
     pub(super) const NONE: Self = Self { of_node: usize::MAX, in_all: usize::MAX };
+
+    /// The bytes that each label of a search takes at most, with its place in the queue.
+    pub fn bytes_per_label(objective: &Objective, budgets: &Budgets) -> u64 {
+        (Labels::bytes_per_label(Tracked::new(objective, budgets).len()) + 3 * size_of::<Waiting>()) as u64
+    }
 }
 
 impl Default for LabelCap {

@@ -10,7 +10,7 @@ use crate::{
     hop::HopTest,
     progress::{Cancelled, Detail, Meter, Progress, Stage},
     quantity::MapPoint,
-    terrain::{Profile, Samples, TerrainError, slice},
+    terrain::{Profile, TerrainError, slice},
     world::Limit,
 };
 
@@ -176,12 +176,7 @@ pub fn fan_size(request: &FanRequest<'_>, progress: &dyn Progress) -> Result<Fan
         largest = largest.max(nodes * NODE_BYTES + segments * SEGMENT_BYTES);
         answers += nodes * size_of::<HopBand>() as u64 * 2 + size_of::<FanRay>() as u64 * 3;
     }
-    let dem = request.ground.terrain().dem();
-    let of_post = match dem.samples() {
-        Samples::Single(_) => size_of::<f32>(),
-        Samples::Double(_) => size_of::<f64>(),
-    };
-    size.elevations_bytes = (dem.rows() * dem.cols() * of_post) as u64;
+    size.elevations_bytes = request.ground.terrain().dem().elevations_bytes();
     size.slices_bytes = largest.saturating_mul(rayon::current_num_threads() as u64).saturating_add(answers);
     Ok(size)
 }

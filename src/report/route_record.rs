@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::limit_counts::LimitCounts;
+use super::{FurtherMeans, limit_counts::LimitCounts};
 use crate::quantity::format_number;
 
 /// How a route over a DEM was searched, in any direction.
@@ -44,6 +44,8 @@ pub struct RouteGapRecord {
     pub refusals: LimitCounts,
     /// The number of judged pairs with missing elevations between them.
     pub without_ground: u64,
+    /// The scenario's keys that set these limits, those of the most refusals first: another value of one of them may close the gap.
+    pub keys: Vec<String>,
 }
 
 /// The nodes of free routes over which all values of a varied key are answered.
@@ -107,7 +109,7 @@ impl RouteRecord {
     }
 
     /// How near the search came, and what refuses to go on, a sentence a line.
-    pub(super) fn nearest(&self) -> Vec<String> {
+    pub(super) fn nearest(&self, means: FurtherMeans<'_>) -> Vec<String> {
         let place = |[x_m, y_m, _]: [f64; 3]| format!("({x_m:.3}, {y_m:.3}) m");
         let mut said = vec![format!(
             "the reached place nearest to the goal is {}; more nodes may find a path: this does not prove that no path exists",
@@ -133,6 +135,10 @@ impl RouteRecord {
                 )
             }
         });
+        if let Some((first, others)) = gap.keys.split_first() {
+            let others = if others.is_empty() { String::new() } else { format!(" (or of {})", others.join(", ")) };
+            said.push(format!("the value of {first} that would close the gap is found by {} {first}{others}", means.requirement));
+        }
         said
     }
 }

@@ -415,12 +415,14 @@ pub struct FurtherMeans<'a> {
     pub budget: &'a str,
     /// The search for a proof that there is no path.
     pub proof: &'a str,
+    /// The search for the least value of a key, which follows it.
+    pub requirement: &'a str,
 }
 
 impl Default for FurtherMeans<'_> {
     /// The library's names.
     fn default() -> Self {
-        Self { budget: "budget of cells", proof: "a proof by bounds" }
+        Self { budget: "budget of cells", proof: "a proof by bounds", requirement: "a search for the least value of" }
     }
 }
 
@@ -475,7 +477,7 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         Some(route) => {
             sheet.line(format_args!("{}", route.nodes(answer.nodes, answer.pairs_tested)));
             if answer.hops.is_none() {
-                route.nearest().iter().for_each(|sentence| sheet.line(format_args!("{sentence}")));
+                route.nearest(means).iter().for_each(|sentence| sheet.line(format_args!("{sentence}")));
             }
         }
         None => sheet.line(format_args!(

@@ -6,8 +6,8 @@ use std::{
 };
 
 use super::{
-    CaseRecord, JourneyEnd, Overlays, PipelineError, Prepared, Survey, footprint::SlicedDem, pipeline::planned_over,
-    scenario_files, with_measured_errors,
+    CaseRecord, JourneyEnd, Overlays, PipelineError, Prepared, Survey, footprint::SlicedDem, free_route::free_alone,
+    pipeline::planned_over, scenario_files, with_measured_errors,
 };
 use crate::{
     chain::Station,
@@ -53,6 +53,8 @@ pub struct Case {
     commands: Commands,
     /// The DEM that the chain was sliced from, whose posts are shared by all cases over this terrain, and its overlays.
     pub(super) sliced: Option<(SlicedDem, Overlays)>,
+    /// The most memory that a search for a free route may take, bytes; `None` for as much as it needs.
+    pub(super) memory_max_bytes: Option<u64>,
     /// The whole ground of this case, once trials have flown over it.
     pub(super) ground: Arc<OnceLock<DemGround>>,
 }
@@ -79,6 +81,12 @@ pub enum CaseError {
         /// What is wanted, with its verb.
         question: &'static str,
     },
+    /// A question about a transect that only a free route answers.
+    #[error("{question} only for a free route, and the route is a transect: set terrain.route = \"free\" over a dem for it")]
+    FreeOnly {
+        /// What is wanted, with its verb.
+        question: &'static str,
+    },
     /// A start or goal that is given nowhere.
     #[error("found no {name}, expected terrain.{name}_x_m, or for a dem or mesh terrain.{name}_m", name = which.name())]
     MissingEnd {
@@ -102,7 +110,16 @@ impl Case {
             let (scenario, of_errors) = with_measured_errors(scenario, base)?;
             prepared.warnings.extend(of_errors);
             let (sliced, ground) = (survey.sliced(), Arc::default());
-            return Ok(Self { scenario, base: base.to_path_buf(), prepared, derated: None, commands, sliced, ground });
+            return Ok(Self {
+                scenario,
+                base: base.to_path_buf(),
+                prepared,
+                derated: None,
+                commands,
+                sliced,
+                memory_max_bytes: None,
+                ground,
+            });
         }
         let mut case = Self::over(&survey, scenario, base, commands)?;
         case.prepared.beside_line = survey.beside_line(&whole)?;
@@ -129,7 +146,18 @@ impl Case {
         let mut prepared = survey.prepare(&whole)?;
         prepared.warnings.extend(of_errors);
         let (sliced, ground) = (survey.sliced(), Arc::default());
-        Ok(Self { prepared, scenario, base: base.to_path_buf(), derated, commands, sliced, ground })
+        Ok(Self { prepared, scenario, base: base.to_path_buf(), derated, commands, sliced, memory_max_bytes: None, ground })
+    }
+
+    /// The same case, whose search for a free route may take no more memory than this.
+    ///
+    /// # Errors
+    /// [`CaseError::FreeOnly`] for a limit along a transect.
+    pub fn within_memory(self, memory_max_bytes: Option<u64>) -> Result<Self, CaseError> {
+        if memory_max_bytes.is_some() {
+            free_alone(&self.scenario, "the memory of a search is limited")?;
+        }
+        Ok(Self { memory_max_bytes, ..self })
     }
 
     /// The same chain for the question of another case, whose scenario and warnings about the input it then states.
@@ -155,6 +183,7 @@ impl Case {
         }
         let mut case = Self::new(self.scenario.clone(), &self.base, commands)?;
         case.prepared.warnings = self.warnings_with(case.prepared.warnings);
+        case.memory_max_bytes = self.memory_max_bytes;
         Ok(case)
     }
 

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     path::HopPath,
-    planner::{Amount, LabelCap, Objective, RouteGoal, RouteQuestion, front_of_routes},
+    planner::{Amount, Objective, RouteGoal, RouteQuestion, front_of_routes},
     progress::Progress,
     report::{FrontRecord, FrontSearchRecord},
 };
@@ -24,8 +24,7 @@ pub(super) fn free_front(
     let scenario = &search.case.scenario;
     let (commands, takeoff) = front_commands(scenario);
     let objective = Objective::of(amount);
-    let question =
-        RouteQuestion { objective: &objective, budgets: &search.budgets, commands, errors: None, cap: LabelCap::default() };
+    let question = RouteQuestion { objective: &objective, budgets: &search.budgets, commands, errors: None, cap: search.cap };
     let goal = RouteGoal { takeoff, ..search.goal };
     let hops_max = |fewest| front_hops_max(scenario, fewest);
     let front = front_of_routes(&search.ground, &search.nodes, &goal, (amount, &question, &hops_max), progress)?;

@@ -5,7 +5,9 @@ use std::path::Path;
 use super::{
     Case, CaseError, Commands, Defect, JourneyError, Prepared, SimulateError,
     dem_ground::dem_ground,
+    free_size::RouteSize,
     free_trials::commanded,
+    gap_keys::gap_keys,
     nodes::{coarse_nodes, level_hop_m, nodes_per_post},
     objective,
     pipeline::planned_over,
@@ -41,6 +43,19 @@ pub enum FreeRouteError {
     /// The raster.
     #[error(transparent)]
     Dem(Box<SimulateError>),
+    /// More memory than allowed.
+    #[error(
+        "the search for a free route needs at least {} MiB ({nodes} nodes), expected at most {} MiB: take a larger spacing of nodes or a part \
+         of the DEM (gdal_translate -projwin), or allow more", needed_bytes.div_ceil(1 << 20), allowed_bytes >> 20
+    )]
+    TooMuchMemory {
+        /// The bytes needed at least.
+        needed_bytes: u64,
+        /// The bytes allowed.
+        allowed_bytes: u64,
+        /// The nodes.
+        nodes: u64,
+    },
     /// A hop of the route that its slice on the unrolled chain does not have.
     #[error(
         "hop {hop} of the route is not feasible along its unrolled chain; this is a defect of chta, please report it with the scenario"
@@ -87,6 +102,17 @@ pub(super) fn along_transect(scenario: &Scenario, question: &'static str) -> Res
     }
 }
 
+/// Refuses what only a free route has.
+///
+/// # Errors
+/// [`CaseError::FreeOnly`] for a transect.
+pub(super) fn free_alone(scenario: &Scenario, question: &'static str) -> Result<(), CaseError> {
+    match scenario.route {
+        Route::Free => Ok(()),
+        Route::Transect => Err(CaseError::FreeOnly { question }),
+    }
+}
+
 /// What a search for free routes is asked of.
 pub(super) struct FreeSearch {
     /// The case, for exact commands.
@@ -99,6 +125,8 @@ pub(super) struct FreeSearch {
     /// What is to be least, and the greatest totals.
     objective: Objective,
     pub(super) budgets: Budgets,
+    /// How many labels it may keep.
+    pub(super) cap: LabelCap,
 }
 
 impl FreeSearch {
@@ -113,7 +141,13 @@ impl FreeSearch {
         let search = &case.scenario.search;
         let goal = RouteGoal { start, goal, effort: search.effort, takeoff: search.takeoff };
         let (objective, budgets) = (case.scenario.full_objective(), case.scenario.total_budgets());
-        Ok(Self { case, ground, nodes, goal, ends, objective, budgets })
+        let cap = RouteSize::of(&ground, &nodes, &objective, &budgets).cap(case.memory_max_bytes)?;
+        Ok(Self { case, ground, nodes, goal, ends, objective, budgets, cap })
+    }
+
+    /// What it takes at most.
+    pub(super) fn size(&self) -> RouteSize {
+        RouteSize::of(&self.ground, &self.nodes, &self.objective, &self.budgets)
     }
 
     /// The best route by the objective, within the budgets.
@@ -127,7 +161,7 @@ impl FreeSearch {
             budgets: &self.budgets,
             commands: scenario.commands,
             errors: errors.zip(whole.as_ref()),
-            cap: LabelCap::default(),
+            cap: self.cap,
         };
         Ok(free_route_by(&self.ground, &self.nodes, &self.goal, &question, progress)?)
     }
@@ -216,7 +250,7 @@ pub(super) fn found_route(case: &Case, progress: &dyn Progress) -> Result<FoundR
         let check = CheckAnswer::new(test, ends.0.point.x_m, ends.1.point.x_m, found, search.goal.effort);
         let check =
             check.with_objective(search.objective_record(&route)).with_derating(DeratingRecord::of(&case.scenario.derating));
-        CheckAnswer { hops_lower_bound: lower, route: Some(record(&search.nodes, &route)), ..check }
+        CheckAnswer { hops_lower_bound: lower, route: Some(record(&search.nodes, &route, &case.scenario)), ..check }
     };
     let Some(found_path) = &route.path else {
         // No station of a chain stands for where a route in any direction ends; the record has the places.
@@ -288,7 +322,7 @@ fn lower_bound(ground: &DemGround, ends: [MapPoint; 2]) -> Option<u64> {
     bounds.hops(libm::hypot(to.at.x - from.at.x, to.at.y - from.at.y), to.z_m - from.z_m)
 }
 
-fn record(nodes: &SurfaceNodes, route: &FreeRoute) -> RouteRecord {
+fn record(nodes: &SurfaceNodes, route: &FreeRoute, scenario: &Scenario) -> RouteRecord {
     let place = |at: &MapPosition| [at.at.x, at.at.y, at.z_m];
     RouteRecord {
         kind: RouteKind::Free,
@@ -305,6 +339,7 @@ fn record(nodes: &SurfaceNodes, route: &FreeRoute) -> RouteRecord {
             judged_pairs: gap.judged,
             refusals: (&gap.refusals).into(),
             without_ground: gap.without_ground,
+            keys: gap_keys(gap, scenario),
         }),
     }
 }

@@ -187,6 +187,15 @@ impl Dem {
         matches!(self.posts, Posts::Single(_))
     }
 
+    /// The bytes that the stored elevations take.
+    pub fn elevations_bytes(&self) -> u64 {
+        let of_post = match self.samples() {
+            Samples::Single(_) => size_of::<f32>(),
+            Samples::Double(_) => size_of::<f64>(),
+        };
+        (self.rows() * self.cols() * of_post) as u64
+    }
+
     /// The stored elevations, for loops over millions of them.
     pub fn samples(&self) -> Samples<'_> {
         match &self.posts {

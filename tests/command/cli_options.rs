@@ -38,7 +38,7 @@ const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
 /// The option of every command, tested in `verbose.rs`.
 const OF_EVERY_COMMAND: &str = "--verbose";
 
-/// The bounds of inputs and of memory, tested in `pipes.rs` and `map_starts.rs`.
+/// The bounds of inputs and of memory, tested in `pipes.rs`, `map_starts.rs` and `free_route.rs`.
 const ON_LARGE_INPUTS: [&str; 2] = ["--input-max-gib", "--memory-max-mib"];
 
 /// The mark of missing data, tested in `missing_data.rs`.
@@ -370,7 +370,12 @@ const CHECK: [Trial; 16] = [
     ("--quiet", &["check", "scenario.toml", "--body", "bennu"], &["check", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-const PLAN: [Trial; 22] = [
+const PLAN: [Trial; 23] = [
+    (
+        "--dry-run",
+        &["plan", "map.toml", "--set", "terrain.route=free"],
+        &["plan", "map.toml", "--set", "terrain.route=free", "--dry-run"],
+    ),
     ("--front", &["plan", "errors.toml"], &["plan", "errors.toml", "--front", "hops,risk"]),
     (
         "--plot-front",

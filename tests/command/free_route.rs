@@ -133,6 +133,45 @@ fn a_no_names_the_limits_that_refuse_the_hops_across_the_gap() {
     assert!(number("width_m") > 0.0 && number("judged_pairs") <= number("pairs"), "{gap}");
     let refusals: f64 = gap["refusals"].as_object().unwrap().values().map(|count| count.as_f64().unwrap()).sum();
     assert!(refusals > 0.0 && refusals + number("without_ground") <= number("judged_pairs"), "{gap}");
+    // The keys that are named can be varied, and the named command is the one that finds the value.
+    let key = gap["keys"][0].as_str().unwrap();
+    assert!(ran.stdout.contains(&format!("chta require SCENARIO --vary {key}")), "{}", ran.stdout);
+    let zone = ["--set", "surface.keep_out=zone.geojson"];
+    let required = desk.json(&[&["require", "free.toml", "--vary", key, "--from", "2", "--to", "30"][..], &zone].concat());
+    let closes = required["reachable_at"].as_f64().expect("a value that closes the gap");
+    let set = format!("{key}={closes}");
+    assert_eq!(desk.run(&[&["check", "free.toml", "--set", set.as_str()][..], &zone].concat()).status, 0, "{required}");
+}
+
+/// The size of a search is stated before it is made, and a limit of memory is kept or refused.
+#[test]
+fn the_memory_of_a_free_plan_is_stated_and_limited() {
+    let desk = walled();
+    let size = desk.json(&["plan", "free.toml", "--dry-run"]);
+    assert_eq!((size["schema"].as_str(), size["dry_run"].as_bool()), (Some("chta/size/1"), Some(true)));
+    let number = |key: &str| size[key].as_u64().unwrap();
+    assert_eq!(number("posts"), 600);
+    let planned = desk.json(&["plan", "free.toml"]);
+    assert_eq!(number("nodes"), planned["nodes"].as_u64().unwrap());
+    assert!(planned["pairs_tested"].as_u64().unwrap() <= number("pairs_max"), "{size}");
+    // The smallest limit that can be given holds these nodes, and the answer stays.
+    let within = desk.json(&["plan", "free.toml", "--memory-max-mib", "1"]);
+    assert_eq!(within["path"], planned["path"]);
+    let fine = ["plan", "free.toml", "--node-spacing-max-m", "0.02"];
+    let tight = [&fine[..], &["--memory-max-mib", "1"]].concat();
+    desk.refused(
+        &tight,
+        &["free route needs at least", "expected at most 1 MiB", "a larger spacing of nodes", "--node-spacing-max-m"],
+    );
+    let refused = desk.run(&tight).stderr;
+    let enough = refused.rsplit_once("--memory-max-mib ").unwrap().1.trim();
+    assert_eq!(desk.run(&[&fine[..], &["--memory-max-mib", enough, "--dry-run"]].concat()).status, 0, "{refused}");
+    for option in [&["--dry-run"][..], &["--memory-max-mib", "1"]] {
+        desk.refused(
+            &[&["plan", "free.toml", "--set", "terrain.route=transect"][..], option].concat(),
+            &["only for a free route", "terrain.route = \"free\""],
+        );
+    }
 }
 
 #[test]

@@ -11,8 +11,9 @@ use clap::Args as ClapArgs;
 
 use super::{
     super::{Failure, load::OwnKey},
-    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, Position, ProveArgs, SearchArgs, cell_count, max_gib, position,
-    success_share, trial_number,
+    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, Position, ProveArgs, SearchArgs, cell_count,
+    maps::SizeArgs,
+    max_gib, position, success_share, trial_number,
 };
 
 /// Options of commands that fly a path.
@@ -135,6 +136,8 @@ pub(crate) struct PlanArgs {
     pub(crate) prove: ProveArgs,
     #[command(flatten)]
     pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) size: SizeArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }

@@ -2,7 +2,7 @@
 
 use chta::{
     report::{DocumentKind, plan_text},
-    study::{PlanOptions, plan},
+    study::{PlanOptions, plan, route_size},
 };
 
 use crate::cli::{
@@ -25,7 +25,12 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     let front = args.front()?;
     threads::start(args.answer.threads)?;
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Plan, &[])?;
+    let loaded = loaded.within_memory(args.size.memory_max_bytes())?;
     loaded.ends()?;
+    if args.size.dry_run {
+        let size = route_size(&loaded.case)?;
+        return output::sized(&loaded.record.document(DocumentKind::Size, &[], size), args.answer.format);
+    }
     if args.geojson.is_some() {
         loaded.check_on_map("--geojson")?;
     }

@@ -61,6 +61,11 @@ impl Loaded {
         })
     }
 
+    /// The same case, whose search may take no more memory than this.
+    pub(crate) fn within_memory(self, memory_max_bytes: Option<u64>) -> Result<Self, Failure> {
+        Ok(Self { case: self.case.within_memory(memory_max_bytes)?, ..self })
+    }
+
     /// An answer as one document, with its warnings.
     pub(crate) fn document<T: Serialize>(&self, kind: DocumentKind, warnings: &[String], answer: T) -> Result<String, Failure> {
         Ok(self.record.document(kind, warnings, answer).to_json()?)

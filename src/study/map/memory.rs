@@ -5,7 +5,6 @@ use crate::{
     ground::DemGround,
     reach::map::{HopMap, LeastTotals, Mobility, NodeLattice, PostHops, PostHopsSize},
     report::{SizeAnswer, SizeRecord},
-    terrain::Samples,
     uncertainty::Policy,
 };
 
@@ -43,10 +42,6 @@ impl MapMemory {
     pub(super) fn of(question: &MapQuestion<'_>, ground: &DemGround, lattice: NodeLattice) -> Result<Self, MapStudyError> {
         let dem = ground.terrain().dem();
         let posts = dem.rows() * dem.cols();
-        let of_post = match dem.samples() {
-            Samples::Single(_) => size_of::<f32>(),
-            Samples::Double(_) => size_of::<f64>(),
-        };
         let PostHopsSize { nodes, offsets, bytes, preparation_bytes } = PostHops::size(ground, lattice)?;
         let has_many = question.starts.len() > 1;
         let mut of_node = HopMap::bytes_per_node(question.effort, has_many);
@@ -81,7 +76,7 @@ impl MapMemory {
             posts,
             nodes,
             pairs_max: (nodes as u64).saturating_mul(offsets as u64),
-            elevations_bytes: (posts * of_post) as u64,
+            elevations_bytes: dem.elevations_bytes(),
             tables_bytes: bytes.saturating_add(preparation_bytes),
             maps_bytes: (nodes * (of_node + working) + objective.map_or(0, |_| LeastTotals::round_bytes(offsets))) as u64,
             rasters_bytes: (nodes * of_rasters) as u64,
