@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use chta::study::{
-    CaseError, CheckError, ExperimentError, FreeRouteError, HopError, JourneyError, PlanError, RequireError, SimulateError, TradeError,
+    CaseError, CheckError, ExperimentError, FreeRouteError, HopError, JourneyError, PlanError, RequireError, SimulateError,
+    TradeError,
 };
 
 use super::{Failure, hints};

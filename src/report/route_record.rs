@@ -137,7 +137,7 @@ impl RouteRecord {
         });
         if let Some((first, others)) = gap.keys.split_first() {
             let others = if others.is_empty() { String::new() } else { format!(" (or of {})", others.join(", ")) };
-            said.push(format!("the value of {first} that would close the gap is found by {} {first}{others}", means.requirement));
+            said.push(format!("whether another value of {first} closes the gap is found by {} {first}{others}", means.requirement));
         }
         said
     }

@@ -198,7 +198,8 @@ impl FreeSearch {
     }
 
     /// What is to be known about the answer.
-    fn warnings(&self, path: Option<&RoutePath>) -> Vec<String> {
+    fn warnings(&self, route: &FreeRoute) -> Vec<String> {
+        let path = route.path.as_ref();
         let scenario = &self.case.scenario;
         let mut warnings = left_out(scenario);
         warnings.extend(coarse_nodes(level_hop_m(&self.ground), "the free route", self.nodes.lattice().spacing_m()));
@@ -207,6 +208,12 @@ impl FreeSearch {
             let spanned =
                 |path: &RoutePath| path.totals.of(Amount::Distance) / path.choices.len() as f64 / self.nodes.lattice().spacing_m();
             warnings.extend(objective::warnings(scenario, path.filter(|path| !path.choices.is_empty()).map(spanned)));
+        } else if route.capped {
+            warnings.push(
+                "the search left out labels because there were too many: the path has the fewest hops over these nodes, and perhaps not the least \
+                 effort; fewer nodes or more memory leave out fewer"
+                    .to_owned(),
+            );
         }
         warnings
     }
@@ -236,7 +243,7 @@ pub(super) fn found_route(case: &Case, progress: &dyn Progress) -> Result<FoundR
     let search = FreeSearch::of(case)?;
     let route = search.route(progress)?;
     let case = &search.case;
-    let mut warnings = search.warnings(route.path.as_ref());
+    let mut warnings = search.warnings(&route);
     let answer = |outcome| graph::Answer {
         outcome,
         spacing: PointSpacing::AtMostM(search.nodes.lattice().spacing_m()),
