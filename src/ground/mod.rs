@@ -31,12 +31,15 @@ pub use height_field::HeightField;
 pub(crate) use hop_reach::HopReach;
 pub(crate) use landing_share::LandingScatter;
 pub use mesh::{
-    BlockedSpan, MeshBuffers, MeshConflict, MeshContact, MeshContactFacet, MeshCourse, MeshGround, MeshTakeoffSet, MeshWindow,
-    MeshWindowEnd, NoMeshContact,
+    BlockedSpan, MeshBuffers, MeshConflict, MeshContact, MeshContactFacet, MeshCourse, MeshGround, MeshPosition, MeshTakeoffSet,
+    MeshWindow, MeshWindowEnd, NoMeshContact,
 };
 pub(crate) use posts::Offset;
 pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostHopsSize, PostRefusal};
 #[cfg(test)]
 pub(crate) use posts::{OffsetTable, Spacing};
-pub use surface::{Around, ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Windows};
+pub use surface::{
+    Around, ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Profiles, Side, Surface, TakeoffWindows, Triangulated,
+    Windows,
+};
 pub use sweep::{LandingTable, Sweep};

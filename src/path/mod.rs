@@ -6,7 +6,7 @@ mod hop;
 mod steps;
 mod timetable;
 
-pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLimit, Violation, execute};
+pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLimit, Violation, execute, execute_over_mesh};
 pub use generate::{PathError, TooManyHops, generate, generate_over};
 pub use hop::{Aim, Hop, HopPath, Propellant, RollOut, Totals, heading_deg};
 pub use steps::NoCommand;

@@ -16,10 +16,12 @@
 
 mod blocked;
 mod contact;
+mod surface;
 mod takeoff_set;
 
 pub use blocked::BlockedSpan;
 pub use contact::{MeshContact, MeshContactFacet, NoMeshContact};
+pub use surface::MeshPosition;
 pub use takeoff_set::{MeshConflict, MeshTakeoffSet, MeshWindow, MeshWindowEnd};
 
 use std::{ops::ControlFlow, sync::Arc};
