@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use nalgebra::{Point3, Vector2};
+use nalgebra::{Point3, Vector2, Vector3};
 
 use super::{
     Around, ContactPoint, Element, Facet, FirstContact, Flight, HeightField, LiftoffVelocity, Profiles, Side, Surface,
@@ -465,9 +465,9 @@ impl FirstContact for ChainGround {
         check_landing(rule, self.test.hopper().limits().arc_landing_speed_max_m_s(), touchdown)
     }
 
-    fn gradient(&self, facet: &SegmentId) -> Vector2<f64> {
+    fn normal(&self, facet: &SegmentId) -> Vector3<f64> {
         let (a, b) = (self.vertices()[facet.index()], self.vertices()[facet.index() + 1]);
-        Vector2::new((b.z_m - a.z_m) / (b.x_m - a.x_m), 0.0)
+        Vector3::new(-(b.z_m - a.z_m) / (b.x_m - a.x_m), -0.0, 1.0)
     }
 
     fn check_bounce(&self, end: &ChainPosition, facet: &SegmentId, touchdown: &TouchdownState) -> Result<(), ContactFailure> {

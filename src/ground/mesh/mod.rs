@@ -16,6 +16,7 @@
 
 mod blocked;
 mod contact;
+mod flight;
 mod surface;
 mod takeoff_set;
 
@@ -43,6 +44,8 @@ pub struct MeshGround {
     tree: Arc<MeshTree>,
     envelope: FlightEnvelope,
     surface: SurfaceProperties,
+    /// Added to every coefficient of friction in the flights of a trial.
+    friction_error: f64,
 }
 
 /// The course of a hop between two contacts of a mesh.
@@ -75,7 +78,7 @@ impl MeshGround {
         surface.check()?;
         let level = nalgebra::Vector3::z();
         facet_constraints(level, Vector2::x(), FacetGround::default(), hopper, gravity, surface)?;
-        Ok(Self { tree: tree.into(), envelope: FlightEnvelope::new(hopper, gravity), surface: *surface })
+        Ok(Self { tree: tree.into(), envelope: FlightEnvelope::new(hopper, gravity), surface: *surface, friction_error: 0.0 })
     }
 
     /// The mesh.

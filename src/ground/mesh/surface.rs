@@ -7,7 +7,7 @@ use crate::{
     chain::{FacetGround, SegmentConstraints, facet_constraints},
     ground::{ContactPoint, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Triangulated, Windows, dem::rest_slope},
     quantity::FacetId,
-    world::{Contact, Direction, FrictionCone, Gravity, Hopper},
+    world::{Contact, Direction, FrictionCone, Gravity, Hopper, SurfaceProperties},
 };
 
 /// A point of the surface of a mesh.
@@ -35,6 +35,11 @@ impl MeshContact {
 const COORDINATE_ULPS: f64 = 16.0;
 
 impl MeshGround {
+    /// The grip and the rest slope of its surface.
+    pub const fn properties(&self) -> &SurfaceProperties {
+        &self.surface
+    }
+
     /// What a facet is, other than its geometry.
     pub(super) fn ground_of(&self, _facet: FacetId) -> FacetGround {
         FacetGround::default()

@@ -201,20 +201,23 @@ impl<S: Surface> Checker<'_, S> {
         facets.into_iter()
     }
 
-    /// The ground's refusals, cone and speed limit; beside an edge, those of both facets.
+    /// The ground's refusals, cone and speed limit; on an edge or a corner, those of all facets that meet there.
     fn ground(&mut self, stated: &ContactPoint, meeting: Meeting) {
         let x_m = stated.along_m;
         let mut known = false;
         let footing = self.footing(meeting.contact);
+        let first = self.violations.len();
         for facet in self.ruling(meeting.contact) {
             let before = self.violations.len();
             self.footprint(footing, facet.rest_slope, x_m);
             self.facet(&facet, meeting, x_m);
             known = true;
-            // A violation on one facet is not reported again for its neighbour.
-            if self.violations.len() > before {
-                return;
-            }
+            // What violates one facet is not reported again for its neighbour.
+            let repeated = |at: usize| (first..before).any(|known| self.violations[known].limit == self.violations[at].limit);
+            let kept: Vec<Violation> =
+                (before..self.violations.len()).filter(|at| !repeated(*at)).map(|at| self.violations[at]).collect();
+            self.violations.truncate(before);
+            self.violations.extend(kept);
         }
         if !known {
             self.note(ViolatedLimit::Limit(Limit::Direction), None, x_m);
