@@ -16,6 +16,7 @@
 
 mod blocked;
 mod contact;
+mod room;
 mod takeoff_set;
 
 pub use blocked::BlockedSpan;
@@ -86,6 +87,11 @@ impl MeshGround {
         &self.envelope
     }
 
+    /// The surface.
+    pub const fn surface(&self) -> &SurfaceProperties {
+        &self.surface
+    }
+
     /// The course from one contact to another; `None` where one is right over the other: a vertical hop has no plane.
     pub fn course(&self, takeoff: &MeshContact, landing: &MeshContact) -> Option<MeshCourse> {
         let away = landing.point_m() - takeoff.point_m();
@@ -95,7 +101,8 @@ impl MeshGround {
         }
         let heading = away.xy() / run_m;
         // The slope of a facet has more digits than the difference of two heights on it.
-        let shared = takeoff.facets().iter().find(|facet| facet.normal.z > 0.0 && landing.touches(facet.id));
+        let on_surface = takeoff.stand_off_m() == 0.0 && landing.stand_off_m() == 0.0;
+        let shared = takeoff.facets().iter().find(|facet| on_surface && facet.normal.z > 0.0 && landing.touches(facet.id));
         let sight = match shared {
             Some(facet) => LineOfSight::along(run_m, (-facet.normal.xy() / facet.normal.z).dot(&heading)),
             None => LineOfSight::new(run_m, away.z),
