@@ -94,7 +94,7 @@ impl Mission {
             }
             MissionGround::Mesh(ground) => {
                 let mesh = ground.tree().mesh();
-                write!(digest, "{:?}{:?}{:?}{:?}", ground.envelope(), ground.properties(), mesh.vertices(), mesh.indices())
+                write!(digest, "{:?}{:?}{:?}{:?}", ground.envelope(), ground.surface(), mesh.vertices(), mesh.indices())
             }
         };
         match &self.replanning {

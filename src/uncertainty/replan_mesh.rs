@@ -24,7 +24,7 @@ impl ContactReplan {
 
 impl Replan<MeshPosition> for ContactReplan {
     fn next(&self, believed: &MeshPosition) -> Option<Command<MeshPosition>> {
-        let from = self.ground.contact(believed.point_m).ok()?;
+        let from = self.ground.contact_near(believed.point_m)?;
         let mut buffers = MeshBuffers::default();
         self.aims.contacts.iter().find_map(|(aim, _)| {
             let (_, lofts) = self.ground.windows(&from, aim, &mut buffers)?;

@@ -64,12 +64,6 @@ impl Arc {
 }
 
 impl MeshGround {
-    /// The facets that meet at a position, or at the point of the surface nearest to it.
-    fn facets_at(&self, position: &MeshPosition) -> Vec<FacetId> {
-        let met = self.tree.touching(position.point_m);
-        if met.is_empty() { self.tree.touching(self.tree.nearest(position.point_m).point) } else { met }
-    }
-
     /// The coefficient of friction of a facet in this trial; `None` where angles are stated instead.
     fn friction_now(&self, facet: FacetId) -> Option<f64> {
         self.friction_of(facet).map(|cone| (cone.coefficient() + self.friction_error).max(0.0))
@@ -197,7 +191,7 @@ impl MeshGround {
     /// The point of the open surface nearest to a position moved by a vector; `None` where that is covered.
     fn moved(&self, from: &MeshPosition, by: Vector3<f64>) -> Option<MeshPosition> {
         let nearest = self.tree.nearest(from.point_m + by).point;
-        self.contact(nearest).ok().map(|contact| MeshPosition { point_m: contact.point_m() })
+        self.contact_near(nearest).map(|contact| MeshPosition { point_m: contact.point_m() })
     }
 }
 

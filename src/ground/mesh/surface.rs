@@ -7,7 +7,7 @@ use crate::{
     chain::{FacetGround, SegmentConstraints, facet_constraints},
     ground::{ContactPoint, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Triangulated, Windows, dem::rest_slope},
     quantity::FacetId,
-    world::{Contact, Direction, FrictionCone, Gravity, Hopper, SurfaceProperties},
+    world::{Contact, Direction, FrictionCone, Gravity, Hopper},
 };
 
 /// A point of the surface of a mesh.
@@ -35,9 +35,21 @@ impl MeshContact {
 const COORDINATE_ULPS: f64 = 16.0;
 
 impl MeshGround {
-    /// The grip and the rest slope of its surface.
-    pub const fn properties(&self) -> &SurfaceProperties {
-        &self.surface
+    /// The same ground, whose contacts stand off the surface by a distance along the normal, m.
+    #[must_use]
+    pub fn standing_off(self, stand_off_m: f64) -> Self {
+        Self { stand_off_m, ..self }
+    }
+
+    /// The facets that rule a position: those that meet there, or at the point of the surface that it stands off.
+    pub(super) fn facets_at(&self, position: &MeshPosition) -> Vec<FacetId> {
+        let met = self.tree.touching(position.point_m);
+        if met.is_empty() { self.tree.touching(self.tree.nearest(position.point_m).point) } else { met }
+    }
+
+    /// The contact nearest to a point; `None` where it is covered, or has no room to stand off.
+    pub(crate) fn contact_near(&self, point_m: Point3<f64>) -> Option<MeshContact> {
+        self.stood_off(&self.contact(point_m).ok()?, self.stand_off_m)
     }
 
     /// What a facet is, other than its geometry.
@@ -79,13 +91,13 @@ impl Surface for MeshGround {
         ContactPoint::on_map(0.0, position.point_m.xy(), position.point_m.z)
     }
 
-    /// A point within the resolution of the surface lies on it as it is.
+    /// A point within the resolution of the surface, or that far from where contacts stand off it, is a contact as it is.
     fn contact_at(&self, stated: &ContactPoint) -> Option<MeshPosition> {
         if stated.frame != Frame::Map || !stated.point_m.iter().all(|coordinate| coordinate.is_finite()) {
             return None;
         }
         let nearest = self.tree.nearest(stated.point_m);
-        let is_on_it = nearest.distance_m <= self.tree.resolution_m();
+        let is_on_it = nearest.distance_m <= self.stand_off_m + self.tree.resolution_m();
         Some(MeshPosition { point_m: if is_on_it { stated.point_m } else { nearest.point } })
     }
 
@@ -110,7 +122,7 @@ impl Surface for MeshGround {
             let rest_slope = rest_slope(self.surface.rest, friction.map(FrictionCone::coefficient));
             Some(Facet { refusal: constraints.refusal(), hold, rest_slope })
         };
-        self.tree.touching(at.point_m).into_iter().filter_map(facet).collect()
+        self.facets_at(at).into_iter().filter_map(facet).collect()
     }
 
     fn height_rounding_m(&self) -> f64 {
@@ -145,7 +157,7 @@ impl Triangulated for MeshGround {
     }
 
     fn touching(&self, at: &MeshPosition) -> Vec<FacetId> {
-        self.tree.touching(at.point_m)
+        self.facets_at(at)
     }
 
     fn outer_normal(&self, facet: FacetId) -> Vector3<f64> {
@@ -157,7 +169,7 @@ impl Windows for MeshGround {
     /// The windows of [`MeshGround::windows`]; `None` too where a position gives no [contact](MeshGround::contact).
     fn windows(&self, takeoff: &MeshPosition, landing: &MeshPosition) -> Option<TakeoffWindows> {
         let mut buffers = super::MeshBuffers::default();
-        let [takeoff, landing] = [takeoff, landing].map(|position| self.contact(position.point_m).ok());
+        let [takeoff, landing] = [takeoff, landing].map(|position| self.contact_near(position.point_m));
         let (sight, lofts) = Self::windows(self, &takeoff?, &landing?, &mut buffers)?;
         Some(TakeoffWindows { sight, lofts: lofts.to_vec() })
     }
