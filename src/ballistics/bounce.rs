@@ -1,15 +1,15 @@
 //! Bounces: the velocity after a contact, and how far and how long a body bounces over level ground.
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 
 use crate::world::Restitution;
 
-/// The velocity after a contact with a facet of this gradient; `None` if the velocity does not point into the facet, so that there is
+/// The velocity after a contact with a facet of this outward normal; `None` if the velocity does not point into the facet, so that there is
 /// no impact.
 ///
 /// ```text
 ///            n
-///      v  \  |  / v'         c  = v . n / n . n,   n = (-gradient, 1)
+///      v  \  |  / v'         c  = v . n / n . n
 ///          \ | /             v' = e_t (v - c n) - e_n c n
 ///     ______\|/______
 /// ```
@@ -17,26 +17,24 @@ use crate::world::Restitution;
 /// The part of the velocity along the normal is reversed and keeps the share `e_n`; the part along the facet keeps the share `e_t`.
 ///
 /// # Units
-/// Velocities in m/s: east, north and up, or along, left and up for a chain. The gradient is the rise of the facet per metre in the two
-/// horizontal directions.
+/// Velocities in m/s: east, north and up, or along, left and up for a chain. The normal is of any length.
 ///
 /// # Examples
 /// ```
 /// use chta::{ballistics::bounced, world::Restitution};
-/// use nalgebra::{Vector2, Vector3};
+/// use nalgebra::Vector3;
 /// let half = Restitution::new(0.5, 0.75, None)?;
 /// // Level ground: 3 m/s across keep three quarters, 4 m/s down become 2 m/s up.
-/// assert_eq!(bounced(Vector3::new(3.0, 0.0, -4.0), Vector2::zeros(), &half), Some(Vector3::new(2.25, 0.0, 2.0)));
+/// assert_eq!(bounced(Vector3::new(3.0, 0.0, -4.0), Vector3::z(), &half), Some(Vector3::new(2.25, 0.0, 2.0)));
 /// // Straight down on a slope of 45 degrees: half of the velocity is along the normal, half along the facet, down the slope.
-/// let away = bounced(Vector3::new(0.0, 0.0, -4.0), Vector2::new(1.0, 0.0), &half).unwrap();
+/// let away = bounced(Vector3::new(0.0, 0.0, -4.0), Vector3::new(-1.0, 0.0, 1.0), &half).unwrap();
 /// // (-2, 0, -2) along the facet times 0.75, and (2, 0, -2) along the normal times -0.5.
 /// assert_eq!(away, Vector3::new(-2.5, 0.0, -0.5));
 /// // A velocity that leaves the facet meets nothing.
-/// assert_eq!(bounced(Vector3::new(3.0, 0.0, 4.0), Vector2::zeros(), &half), None);
+/// assert_eq!(bounced(Vector3::new(3.0, 0.0, 4.0), Vector3::z(), &half), None);
 /// # Ok::<(), chta::world::InvalidRestitution>(())
 /// ```
-pub fn bounced(velocity_m_s: Vector3<f64>, gradient: Vector2<f64>, restitution: &Restitution) -> Option<Vector3<f64>> {
-    let normal = Vector3::new(-gradient.x, -gradient.y, 1.0);
+pub fn bounced(velocity_m_s: Vector3<f64>, normal: Vector3<f64>, restitution: &Restitution) -> Option<Vector3<f64>> {
     let share = velocity_m_s.dot(&normal) / normal.norm_squared();
     let into = normal * share;
     (share < 0.0).then(|| (velocity_m_s - into) * restitution.tangential() - into * restitution.normal())
@@ -130,12 +128,11 @@ mod tests {
     fn a_bounce_scales_both_parts_of_the_velocity() {
         let mut draw = crate::draw::Draw::seeded(8);
         for _ in 0..1000 {
-            let gradient = Vector2::new(draw.uniform(-3.0, 3.0), draw.uniform(-3.0, 3.0));
             let velocity = Vector3::new(draw.uniform(-9.0, 9.0), draw.uniform(-9.0, 9.0), draw.uniform(-9.0, 9.0));
             let bounces = Restitution::new(draw.uniform(0.0, 0.9), draw.uniform(0.0, 0.9), None).unwrap();
-            let normal = Vector3::new(-gradient.x, -gradient.y, 1.0).normalize();
+            let normal = Vector3::new(draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0)).normalize();
             let into = velocity.dot(&normal);
-            match bounced(velocity, gradient, &bounces) {
+            match bounced(velocity, 2.5 * normal, &bounces) {
                 None => assert!(into > -1e-12),
                 Some(away) => {
                     assert!((away.dot(&normal) + bounces.normal() * into).abs() < 1e-12);

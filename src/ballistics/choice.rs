@@ -62,6 +62,50 @@ impl TakeoffChoice {
             Self::MidRange | Self::MostReliable => bisecting_loft(sight, lower, upper),
         }
     }
+
+    /// The window to fly of several feasible ones, ascending and disjoint, by its number, and the loft in it; `None` of none.
+    ///
+    /// ```text
+    ///     least speed: the arc of least speed over all windows;   least time: the flattest;   mid range: in the widest window, by angle
+    /// ```
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{ballistics::{LineOfSight, TakeoffChoice}, quantity::SlopeInterval};
+    /// // 45 degrees lies between the windows, nearer to the second by speed: (1 + m^2) / m is 2.5 at 0.5 and 2.05 at 1.25.
+    /// let windows = [[0.2, 0.5], [1.25, 1.5]].map(|[lower, upper]| SlopeInterval { lower, upper });
+    /// let of = |choice: TakeoffChoice| choice.among(LineOfSight::new(10.0, 0.0), windows);
+    /// assert_eq!(of(TakeoffChoice::LeastSpeed), Some((1, 1.25)));
+    /// assert_eq!(of(TakeoffChoice::LeastTime), Some((0, 0.2)));
+    /// assert_eq!(of(TakeoffChoice::MidRange).map(|(window, _)| window), Some(0));
+    /// ```
+    pub fn among(self, sight: LineOfSight, windows: impl IntoIterator<Item = SlopeInterval>) -> Option<(usize, f64)> {
+        let mut windows = windows.into_iter().enumerate();
+        let (mut at, mut best) = windows.next()?;
+        if self != Self::LeastTime {
+            let slope = |loft: f64| sight.slope() + loft;
+            // What is to be least. The square of the speed is (1 + m^2) / n times a constant.
+            let worth = |set: SlopeInterval| match self {
+                Self::LeastSpeed | Self::LeastTime => {
+                    let loft = self.loft(sight, set);
+                    (1.0 + slope(loft) * slope(loft)) / loft
+                }
+                Self::MidRange | Self::MostReliable => {
+                    Angle::from_slope(slope(set.lower)).radians() - Angle::from_slope(slope(set.upper)).radians()
+                }
+            };
+            // One window, the usual case, is compared with nothing.
+            let mut least = None;
+            for (number, set) in windows {
+                let known = *least.get_or_insert_with(|| worth(best));
+                let this = worth(set);
+                if this < known {
+                    (at, best, least) = (number, set, Some(this));
+                }
+            }
+        }
+        Some((at, self.loft(sight, best)))
+    }
 }
 
 crate::quantity::by_name!(TakeoffChoice, TakeoffChoice::ALL);

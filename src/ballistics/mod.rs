@@ -38,6 +38,7 @@ mod greatest_reach;
 pub mod limits;
 mod line_of_sight;
 mod path_bounds;
+mod plane_times;
 mod safety;
 
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
@@ -49,4 +50,5 @@ pub use flight_envelope::{ContactLimits, FlightEnvelope};
 pub use greatest_reach::{landing_reach_m, takeoff_reach_m};
 pub use line_of_sight::LineOfSight;
 pub use path_bounds::PathBounds;
+pub use plane_times::plane_times_s;
 pub use safety::{safety_ceiling_m, safety_range_m};

@@ -71,6 +71,21 @@ impl PathBounds {
         hops.is_finite().then_some(((hops * SHAVED).ceil() as u64).max(1))
     }
 
+    /// Whether one hop may span a straight line of this length and climb, by these speeds alone: quick, and never wrong about a hop that
+    /// exists.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::ballistics::PathBounds;
+    /// let bounds = PathBounds::new(5.0, 9.0, 1.62);
+    /// assert!(bounds.span(15.0, 0.0) && !bounds.span(16.0, 0.0) && bounds.span(50.0, -40.0) && !bounds.span(50.0, -30.0));
+    /// ```
+    #[inline]
+    pub fn span(&self, straight_m: f64, climb_m: f64) -> bool {
+        let by = |length_m: f64, speed_m_s: f64| SHAVED * self.gravity_m_s2 * length_m <= speed_m_s * speed_m_s;
+        by(straight_m + climb_m, self.takeoff_m_s) && by(straight_m - climb_m, self.landing_m_s)
+    }
+
     /// The least sum of take-off speeds, m/s.
     pub fn takeoff_speeds_m_s(&self, run_m: f64, climb_m: f64) -> f64 {
         SHAVED * self.gravity_m_s2 * ends(run_m, climb_m)[0] / self.takeoff_m_s

@@ -32,6 +32,9 @@ mod keys;
 mod legend;
 mod map;
 mod mesh_hop;
+mod mesh_raster;
+mod mesh_route;
+mod mesh_table;
 mod of_answers;
 mod palette;
 mod picture;
@@ -62,6 +65,7 @@ pub use map::{
     MapPosts, PlanView, RasterStyle, ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,
 };
 pub use mesh_hop::{MeshHopFigure, draw_mesh_hop};
+pub use mesh_route::{MeshRouteFigure, MeshRouteLine, SeenFrom, draw_mesh_route};
 pub use picture::{Caption, Picture, PictureFormat};
 pub use rose::draw_rose;
 pub use scale::Scale;

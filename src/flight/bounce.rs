@@ -92,7 +92,7 @@ pub(super) fn bounces<G: FirstContact>(
     };
     let mut heading = touchdown.heading;
     loop {
-        let away = bounced(velocity, ground.gradient(&facet), restitution);
+        let away = bounced(velocity, ground.normal(&facet), restitution);
         let Some(away) = away.filter(|away| away.norm() >= settled_m_s) else { break };
         if ended.count == BOUNCES_MAX {
             ended.failure = Some(ContactFailure::Slides);

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Point3, Vector2};
 
-use super::{Around, ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Side, Surface};
+use super::{Around, ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Profiles, Side, Surface};
 use crate::{
     chain::{ConstrainedChain, Footing, GroundForm, SegmentConstraints, Site, Station, rest_slope},
     quantity::{SegmentId, VertexId},
@@ -75,6 +75,38 @@ impl Surface for ConstrainedChain {
         Some(((to.point.x_m - from.point.x_m).abs(), heading_of(direction)))
     }
 
+    fn facets(&self, at: &Station, heading: Vector2<f64>, side: Side) -> Vec<Facet> {
+        let direction = direction_of(heading);
+        // A take-off obeys the segment ahead of its station, a landing the one behind.
+        let contact = match side {
+            Side::Ahead => Contact::Takeoff,
+            Side::Behind => Contact::Landing,
+        };
+        let id = at.ruling_segment(contact, direction, self.segments().len());
+        let rest = |id: SegmentId| self.geometry().grounds().get(id.index()).and_then(|ground| rest_slope(ground, self.surface()));
+        id.and_then(|id| Some(facet(self.segments().get(id.index())?, direction, rest(id)))).into_iter().collect()
+    }
+
+    fn height_rounding_m(&self) -> f64 {
+        HEIGHT_ULPS * f64::EPSILON * self.height_bound_m()
+    }
+
+    /// Stations are exact.
+    fn position_rounding_m(&self) -> f64 {
+        0.0
+    }
+
+    /// A station is at a vertex only if its x is exactly the vertex's; there is no snapping.
+    fn resolution_m(&self) -> f64 {
+        0.0
+    }
+
+    fn slope_rounding(&self) -> f64 {
+        0.0
+    }
+}
+
+impl Profiles for ConstrainedChain {
     fn walk(&self, from: &Station, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>) {
         let direction = direction_of(heading);
         let (geometry, last) = (self.geometry(), self.geometry().segment_count());
@@ -100,18 +132,6 @@ impl Surface for ConstrainedChain {
             (from_m, from_z_m) = (element.to_m, element.to_z_m);
             next = next_vertex(Site::Vertex(vertex), direction, last);
         }
-    }
-
-    fn facets(&self, at: &Station, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2] {
-        let direction = direction_of(heading);
-        // A take-off obeys the segment ahead of its station, a landing the one behind.
-        let contact = match side {
-            Side::Ahead => Contact::Takeoff,
-            Side::Behind => Contact::Landing,
-        };
-        let id = at.ruling_segment(contact, direction, self.segments().len());
-        let rest = |id: SegmentId| self.geometry().grounds().get(id.index()).and_then(|ground| rest_slope(ground, self.surface()));
-        [id.and_then(|id| Some(facet(self.segments().get(id.index())?, direction, rest(id)))), None]
     }
 
     fn around(&self, at: &Station, distance_m: f64) -> Around {
@@ -154,23 +174,5 @@ impl Surface for ConstrainedChain {
                 }
             }
         }
-    }
-
-    fn height_rounding_m(&self) -> f64 {
-        HEIGHT_ULPS * f64::EPSILON * self.height_bound_m()
-    }
-
-    /// Stations are exact.
-    fn position_rounding_m(&self) -> f64 {
-        0.0
-    }
-
-    /// A station is at a vertex only if its x is exactly the vertex's; there is no snapping.
-    fn resolution_m(&self) -> f64 {
-        0.0
-    }
-
-    fn slope_rounding(&self) -> f64 {
-        0.0
     }
 }

@@ -2,11 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use nalgebra::{Point3, Vector2};
+use nalgebra::{Point3, Vector2, Vector3};
 
 use super::{
-    Around, ContactPoint, Element, Facet, FirstContact, Flight, HeightField, LiftoffVelocity, Side, Surface, TakeoffWindows,
-    TouchdownState, Windows,
+    Around, ContactPoint, Element, Facet, FirstContact, Flight, HeightField, LiftoffVelocity, Profiles, Side, Surface,
+    TakeoffWindows, TouchdownState, Windows,
     chain::{direction_of, next_vertex},
     first_contact::{ContactFailure, PLACE_TOLERANCE, Realization, check_landing, failure_of, holds},
 };
@@ -308,26 +308,8 @@ impl Surface for ChainGround {
         self.test.chain().course(&from.station, &to.station)
     }
 
-    fn walk(&self, from: &ChainPosition, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>) {
-        self.test.chain().walk(&from.station, heading, visit);
-    }
-
-    fn facets(&self, at: &ChainPosition, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2] {
+    fn facets(&self, at: &ChainPosition, heading: Vector2<f64>, side: Side) -> Vec<Facet> {
         self.test.chain().facets(&at.station, heading, side)
-    }
-
-    fn around(&self, at: &ChainPosition, distance_m: f64) -> Around {
-        self.test.chain().around(&at.station, distance_m)
-    }
-
-    fn rays(
-        &self,
-        at: &ChainPosition,
-        distance_m: f64,
-        headings: &[Vector2<f64>],
-        visit: &mut dyn FnMut(usize, &Element) -> ControlFlow<()>,
-    ) {
-        self.test.chain().rays(&at.station, distance_m, headings, visit);
     }
 
     fn height_rounding_m(&self) -> f64 {
@@ -344,6 +326,26 @@ impl Surface for ChainGround {
 
     fn slope_rounding(&self) -> f64 {
         self.test.chain().slope_rounding()
+    }
+}
+
+impl Profiles for ChainGround {
+    fn walk(&self, from: &ChainPosition, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>) {
+        self.test.chain().walk(&from.station, heading, visit);
+    }
+
+    fn around(&self, at: &ChainPosition, distance_m: f64) -> Around {
+        self.test.chain().around(&at.station, distance_m)
+    }
+
+    fn rays(
+        &self,
+        at: &ChainPosition,
+        distance_m: f64,
+        headings: &[Vector2<f64>],
+        visit: &mut dyn FnMut(usize, &Element) -> ControlFlow<()>,
+    ) {
+        self.test.chain().rays(&at.station, distance_m, headings, visit);
     }
 }
 
@@ -463,9 +465,9 @@ impl FirstContact for ChainGround {
         check_landing(rule, self.test.hopper().limits().arc_landing_speed_max_m_s(), touchdown)
     }
 
-    fn gradient(&self, facet: &SegmentId) -> Vector2<f64> {
+    fn normal(&self, facet: &SegmentId) -> Vector3<f64> {
         let (a, b) = (self.vertices()[facet.index()], self.vertices()[facet.index() + 1]);
-        Vector2::new((b.z_m - a.z_m) / (b.x_m - a.x_m), 0.0)
+        Vector3::new(-(b.z_m - a.z_m) / (b.x_m - a.x_m), -0.0, 1.0)
     }
 
     fn check_bounce(&self, end: &ChainPosition, facet: &SegmentId, touchdown: &TouchdownState) -> Result<(), ContactFailure> {

@@ -5,7 +5,7 @@ use std::{ops::ControlFlow, sync::Arc};
 use nalgebra::{Vector2, Vector3};
 
 use super::{
-    Around, ContactPoint, Element, Facet, Frame, Hold, NodeLattice, Realization, Side, Surface, TakeoffWindows, Windows,
+    Around, ContactPoint, Element, Facet, Frame, Hold, NodeLattice, Profiles, Realization, Side, Surface, TakeoffWindows, Windows,
     excluded::{GreatestSpeeds, slopes_ahead},
     posts::Standing,
 };
@@ -422,6 +422,43 @@ impl Surface for DemGround {
         (run_m > self.position_rounding_m).then(|| (run_m, away / run_m))
     }
 
+    fn facets(&self, at: &MapPosition, heading: Vector2<f64>, side: Side) -> Vec<Facet> {
+        let triangles = self.triangles();
+        let towards = match side {
+            Side::Ahead => heading,
+            Side::Behind => -heading,
+        };
+        // One point on each side of the line, farther from it than the tolerance of the lattice, and far enough along it that a
+        // line which only starts next to an edge has left the edge.
+        let along = at.at + self.moved(towards, FACET_LOOK * self.aside_posts);
+        let across = self.moved(Vector2::new(-heading.y, heading.x), self.aside_posts);
+        let gradients = [along + across, along - across].map(|point| triangles.at(point, triangles.nominal()).map(|(_, g)| g));
+        let [left, right] = gradients;
+        let right = right.filter(|right| left != Some(*right));
+        let overlaid = |gradient| self.overlaid(at.at, heading, side, gradient);
+        let known = [left, right].into_iter().flatten().filter_map(|gradient| overlaid(gradient).map(|known| (gradient, known)));
+        known.map(|(gradient, known)| facet_of(gradient, self.surface.rest, known)).collect()
+    }
+
+    fn height_rounding_m(&self) -> f64 {
+        self.height_rounding_m
+    }
+
+    fn position_rounding_m(&self) -> f64 {
+        self.position_rounding_m
+    }
+
+    fn resolution_m(&self) -> f64 {
+        self.resolution_m
+    }
+
+    fn slope_rounding(&self) -> f64 {
+        let map = self.terrain.dem().georeference();
+        2.0 * (self.height_rounding_m + self.position_rounding_m) / map.step_m()
+    }
+}
+
+impl Profiles for DemGround {
     fn walk(&self, from: &MapPosition, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>) {
         let triangles = self.triangles();
         let mut at = (0.0, from.z_m);
@@ -456,44 +493,8 @@ impl Surface for DemGround {
         }
     }
 
-    fn facets(&self, at: &MapPosition, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2] {
-        let triangles = self.triangles();
-        let towards = match side {
-            Side::Ahead => heading,
-            Side::Behind => -heading,
-        };
-        // One point on each side of the line, farther from it than the tolerance of the lattice, and far enough along it that a
-        // line which only starts next to an edge has left the edge.
-        let along = at.at + self.moved(towards, FACET_LOOK * self.aside_posts);
-        let across = self.moved(Vector2::new(-heading.y, heading.x), self.aside_posts);
-        let gradients = [along + across, along - across].map(|point| triangles.at(point, triangles.nominal()).map(|(_, g)| g));
-        let [left, right] = gradients;
-        let right = right.filter(|right| left != Some(*right));
-        let overlaid = |gradient| self.overlaid(at.at, heading, side, gradient);
-        [left, right].map(|gradient| {
-            gradient.and_then(|gradient| overlaid(gradient).map(|known| facet_of(gradient, self.surface.rest, known)))
-        })
-    }
-
     fn around(&self, _: &MapPosition, _: f64) -> Around {
         Around::Map
-    }
-
-    fn height_rounding_m(&self) -> f64 {
-        self.height_rounding_m
-    }
-
-    fn position_rounding_m(&self) -> f64 {
-        self.position_rounding_m
-    }
-
-    fn resolution_m(&self) -> f64 {
-        self.resolution_m
-    }
-
-    fn slope_rounding(&self) -> f64 {
-        let map = self.terrain.dem().georeference();
-        2.0 * (self.height_rounding_m + self.position_rounding_m) / map.step_m()
     }
 }
 

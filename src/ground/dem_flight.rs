@@ -127,7 +127,7 @@ impl FirstContact for DemGround {
             return false;
         }
         match (friction, self.stated(gradient, liftoff.heading)) {
-            (Some(friction), _) => holds_on(gradient, friction, velocity(liftoff), ANGLE_TOLERANCE_RAD),
+            (Some(friction), _) => holds_on(normal_of(gradient), friction, velocity(liftoff), ANGLE_TOLERANCE_RAD),
             (None, Some(stated)) => holds(Ok(stated.takeoff), liftoff),
             (None, None) => false,
         }
@@ -196,7 +196,7 @@ impl FirstContact for DemGround {
         self.rests(end, *support_facet, friction)?;
         match (friction, self.stated(*support_facet, touchdown.heading)) {
             (Some(friction), _) if limits.landing.brakes() => {
-                let held = holds_on(*support_facet, friction, Vector3::z(), touchdown.angle_tolerance_rad);
+                let held = holds_on(normal_of(*support_facet), friction, Vector3::z(), touchdown.angle_tolerance_rad);
                 if held { Ok(()) } else { Err(ContactFailure::Slides) }
             }
             (None, Some(stated)) if limits.landing.brakes() => {
@@ -209,7 +209,7 @@ impl FirstContact for DemGround {
             (Some(friction), _) => {
                 let across = touchdown.heading * touchdown.horizontal_m_s;
                 let back = -Vector3::new(across.x, across.y, touchdown.vertical_m_s);
-                let held = holds_on(*support_facet, friction, back, touchdown.angle_tolerance_rad);
+                let held = holds_on(normal_of(*support_facet), friction, back, touchdown.angle_tolerance_rad);
                 if held { Ok(()) } else { Err(ContactFailure::Slides) }
             }
             (None, Some(stated)) => check_landing(Ok(stated.landing), landing_speed_max_m_s, touchdown),
@@ -217,8 +217,8 @@ impl FirstContact for DemGround {
         }
     }
 
-    fn gradient(&self, facet: &Gradient) -> Vector2<f64> {
-        *facet
+    fn normal(&self, facet: &Gradient) -> Vector3<f64> {
+        normal_of(*facet)
     }
 
     fn check_bounce(&self, end: &MapPosition, _facet: &Gradient, touchdown: &TouchdownState) -> Result<(), ContactFailure> {
@@ -267,15 +267,19 @@ fn velocity(liftoff: &LiftoffVelocity) -> Vector3<f64> {
     Vector3::new(liftoff.heading.x * liftoff.horizontal_m_s, liftoff.heading.y * liftoff.horizontal_m_s, liftoff.vertical_m_s)
 }
 
-/// Whether a facet with this gradient and friction holds a velocity that points away from it.
+/// The upward normal of a facet with this gradient.
+fn normal_of(gradient: Gradient) -> Vector3<f64> {
+    Vector3::new(-gradient.x, -gradient.y, 1.0)
+}
+
+/// Whether a facet with this normal, of any length, and friction holds a velocity that points away from it.
 ///
 /// ```text
 ///     |v - (n . v) n| <= mu (n . v)
 /// ```
 ///
 /// This is the friction cone itself; a slice has the cone's section by the plane of travel.
-fn holds_on(gradient: Gradient, friction: f64, away: Vector3<f64>, tolerance_rad: f64) -> bool {
-    let normal = Vector3::new(-gradient.x, -gradient.y, 1.0);
+pub(super) fn holds_on(normal: Vector3<f64>, friction: f64, away: Vector3<f64>, tolerance_rad: f64) -> bool {
     let upward = normal.dot(&away);
     // |n x v| is the length of n times the component of v along the facet.
     let along2 = normal.cross(&away).norm_squared();

@@ -1,6 +1,6 @@
 //! Where an arc first meets the ground, and whether the ground holds the hopper there.
 
-use nalgebra::{Point3, Vector2};
+use nalgebra::{Point3, Vector2, Vector3};
 
 use super::{HeightField, Surface};
 use crate::{
@@ -71,6 +71,11 @@ pub trait FirstContact: Surface + Clone + Send + Sync {
     /// Coordinates of a position: on a chain x along it, y to its left, z up; on a map easting, northing and z.
     fn point(&self, position: &Self::Contact) -> Point3<f64>;
 
+    /// How far two of its points are apart, as errors of landings and the distance from a goal are measured, m: horizontally.
+    fn apart_m(&self, one: &Point3<f64>, other: &Point3<f64>) -> f64 {
+        (one - other).xy().norm()
+    }
+
     /// Whether the ground holds a take-off with this velocity.
     fn holds_takeoff(&self, from: &Self::Contact, liftoff: &LiftoffVelocity) -> bool;
 
@@ -93,8 +98,8 @@ pub trait FirstContact: Surface + Clone + Send + Sync {
         touchdown: &TouchdownState,
     ) -> Result<(), ContactFailure>;
 
-    /// The gradient of a facet, in the horizontal coordinates of [`point`](Self::point). A chain does not slope to the side.
-    fn gradient(&self, facet: &Self::SupportFacet) -> Vector2<f64>;
+    /// The outward normal of a facet, of any length, in the coordinates of [`point`](Self::point). A chain does not slope to the side.
+    fn normal(&self, facet: &Self::SupportFacet) -> Vector3<f64>;
 
     /// Whether the ground allows a contact after the first one, from which the hopper bounces on or at which it comes to rest: outside
     /// keep-out zones, and not faster than the landing speed limit.

@@ -1,12 +1,14 @@
-//! The ground under a hop: chains, and DEMs with their overlays, behind the same three traits.
+//! The ground under a hop: chains, DEMs with their overlays, and meshes, behind the same traits.
 //!
 //! ```text
-//!   Surface        raw facts: contacts, elements under a line of travel, facets, normals, friction, zones
+//!   Surface        raw facts: contacts and the facets that rule there, normals, friction, zones
+//!     Profiles     ground with one height at every place: the elements under a line of travel
+//!     Triangulated ground of triangles that may stand over one another: those in a box
 //!   Windows        feasible take-off windows between two contacts, in closed form
 //!   FirstContact   where an arc comes down, and whether the ground holds the hopper there
 //! ```
 //!
-//! The independent checker uses [`Surface`] alone; planners use [`Windows`], or a fast equivalent with the same results; trials
+//! The independent checker uses [`Surface`] and its two extensions alone; planners use [`Windows`], or a fast equivalent with the same results; trials
 //! follow arcs with [`FirstContact`].
 
 mod chain;
@@ -31,12 +33,15 @@ pub use height_field::HeightField;
 pub(crate) use hop_reach::HopReach;
 pub(crate) use landing_share::LandingScatter;
 pub use mesh::{
-    BlockedSpan, MeshBuffers, MeshConflict, MeshContact, MeshContactFacet, MeshCourse, MeshGround, MeshTakeoffSet, MeshWindow,
-    MeshWindowEnd, NoMeshContact,
+    BlockedSpan, MeshBuffers, MeshConflict, MeshContact, MeshContactFacet, MeshCourse, MeshGround, MeshPosition, MeshTakeoffSet,
+    MeshWindow, MeshWindowEnd, NoMeshContact,
 };
 pub(crate) use posts::Offset;
 pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostHopsSize, PostRefusal};
 #[cfg(test)]
 pub(crate) use posts::{OffsetTable, Spacing};
-pub use surface::{Around, ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Windows};
+pub use surface::{
+    Around, ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Profiles, Side, Surface, TakeoffWindows, Triangulated,
+    Windows,
+};
 pub use sweep::{LandingTable, Sweep};

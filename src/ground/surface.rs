@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector2, Vector3};
 use crate::{
     ballistics::{LineOfSight, TakeoffSpeeds},
     chain::{ContactRule, GroundRefusal, LineConstraints, Station},
-    quantity::{ChainPoint, MapPoint, SlopeInterval, VertexId},
+    quantity::{ChainPoint, FacetId, MapPoint, SlopeInterval, VertexId},
     world::{Contact, FrictionCone, Gravity, Hopper},
 };
 
@@ -151,13 +151,13 @@ pub struct ElementVertex {
     pub x_m: f64,
 }
 
-/// A ground: its contacts, and what lies under a straight line of travel from a contact.
+/// A ground: its contacts, and the facets that rule there.
 ///
 /// These are facts without any equation of motion, so that the independent checker ([`crate::path::execute()`]) may use them.
-/// [`ConstrainedChain`](crate::chain::ConstrainedChain) and [`DemGround`](super::DemGround) implement it; a further kind of ground
-/// (a mesh, stances of legs) is one more implementation.
+/// [`ConstrainedChain`](crate::chain::ConstrainedChain) and [`DemGround`](super::DemGround) implement it, with a [profile](Profiles)
+/// under every line of travel, and [`MeshGround`](super::MeshGround), with [facets](Triangulated) that may stand over one another.
 pub trait Surface {
-    /// A contact with this ground: a station of a chain, a point of a map.
+    /// A contact with this ground: a station of a chain, a point of a map or of a mesh.
     type Contact: Copy + PartialEq + fmt::Debug + Send + Sync;
 
     /// The hopper.
@@ -174,22 +174,38 @@ pub trait Surface {
     /// The position of a contact.
     fn contact_point(&self, contact: &Self::Contact) -> ContactPoint;
 
-    /// This ground's contact at the horizontal position of a stated point; `None` where there is no ground.
+    /// This ground's contact at the horizontal position of a stated point, over a mesh at the point of its surface nearest to it; `None`
+    /// where there is no ground.
     fn contact_at(&self, stated: &ContactPoint) -> Option<Self::Contact>;
 
     /// Horizontal distance from one contact to another, m, and the unit direction of travel (east and north on a map; (1, 0) or
     /// (-1, 0) along a chain); `None` if both have the same horizontal position.
     fn course(&self, from: &Self::Contact, to: &Self::Contact) -> Option<(f64, Vector2<f64>)>;
 
+    /// The facets that rule a contact for a line of travel: the facet under the line on that side of the contact, or both facets if it
+    /// runs along their common edge; of a mesh all that meet at the contact.
+    fn facets(&self, at: &Self::Contact, heading: Vector2<f64>, side: Side) -> Vec<Facet>;
+
+    /// Rounding error of the heights of this ground, m.
+    fn height_rounding_m(&self) -> f64;
+
+    /// Rounding error of the horizontal positions, m.
+    fn position_rounding_m(&self) -> f64;
+
+    /// Positions closer than this are one position, m: shorter elements carry no information.
+    fn resolution_m(&self) -> f64;
+
+    /// Rounding error of the slope of a facet, and of the direction of a line of travel, rad.
+    fn slope_rounding(&self) -> f64;
+}
+
+/// A ground with one height at every place: what lies under a straight line of travel from a contact.
+pub trait Profiles: Surface {
     /// Visits the ground under a line of travel from a contact, element by element, until the visitor breaks or the known ground
     /// ends.
     ///
     /// The elements touch; the first begins at the contact.
     fn walk(&self, from: &Self::Contact, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>);
-
-    /// The facets under a line of travel next to a contact: the facet under the line, or both facets if it runs along their common
-    /// edge.
-    fn facets(&self, at: &Self::Contact, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2];
 
     /// In which directions the ground within a distance of a contact is known, m.
     fn around(&self, at: &Self::Contact, distance_m: f64) -> Around;
@@ -207,18 +223,21 @@ pub trait Surface {
             self.walk(at, *heading, &mut |element| visit(ray, element));
         }
     }
+}
 
-    /// Rounding error of the heights of this ground, m.
-    fn height_rounding_m(&self) -> f64;
+/// A ground of triangles that may stand over one another: caves, overhangs, ceilings.
+pub trait Triangulated: Surface {
+    /// Opposite corners of the box around all triangles, the lower one first.
+    fn bounds(&self) -> [Point3<f64>; 2];
 
-    /// Rounding error of the horizontal positions, m.
-    fn position_rounding_m(&self) -> f64;
+    /// Visits every triangle that meets a box, given by its lower and its upper corner, and perhaps some beside it; in any order.
+    fn visit_triangles(&self, within: [Point3<f64>; 2], visit: &mut dyn FnMut(FacetId, &[Point3<f64>; 3]));
 
-    /// Positions closer than this are one position, m: shorter elements carry no information.
-    fn resolution_m(&self) -> f64;
+    /// The triangles that meet at a contact.
+    fn touching(&self, at: &Self::Contact) -> Vec<FacetId>;
 
-    /// Rounding error of the slope of a facet, and of the direction of a line of travel, rad.
-    fn slope_rounding(&self) -> f64;
+    /// The normal of a triangle on its outer side, of length 1.
+    fn outer_normal(&self, facet: FacetId) -> Vector3<f64>;
 }
 
 /// The feasible take-off windows between two contacts.

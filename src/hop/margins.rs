@@ -2,25 +2,26 @@
 
 use super::{HopTest, terrain::least_height};
 use crate::{
-    ballistics::Arc,
-    chain::{ContactRule, Station},
+    ballistics::{Arc, ContactLimits},
+    chain::Station,
     quantity::{Angle, SlopeInterval},
     world::{Contact, Direction, HopperLimits, Limit},
 };
 
-/// One hop, as the margins see it.
-struct Flown<'a> {
-    arc: &'a Arc,
-    takeoff: ContactRule,
-    landing: ContactRule,
-    hopper: &'a HopperLimits,
-    mechanism: SlopeInterval,
-    /// The least height over the ground with its clearance, m.
-    height_m: f64,
+/// One hop, as the margins see it. What the ground does not limit is infinite.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flown<'a> {
+    pub(crate) arc: &'a Arc,
+    pub(crate) takeoff: ContactLimits,
+    pub(crate) landing: ContactLimits,
+    pub(crate) hopper: &'a HopperLimits,
+    pub(crate) mechanism: SlopeInterval,
+    /// The least height over the ground, or under it, with its clearance, m, and where that is, m from the take-off.
+    pub(crate) terrain: Option<(f64, f64)>,
     /// By how much the ground at take-off and landing is less steep than the rest slope, degrees.
-    rest_deg: [f64; 2],
+    pub(crate) rest_deg: [f64; 2],
     /// By how much the ground under the footprint at take-off and landing is more even than it has to be, m.
-    roughness_m: [f64; 2],
+    pub(crate) roughness_m: [f64; 2],
 }
 
 /// One margin: its name, its limit and its equation. A further limit of the hopper is one more row of [`MARGINS`].
@@ -36,18 +37,18 @@ pub struct MarginRow {
 
 /// All margins, in the order in which results list them.
 pub const MARGINS: [MarginRow; 16] = [
-    row("takeoff_speed_m_s", Limit::TakeoffSpeed, |f| f.takeoff.speed_max_m_s() - f.arc.takeoff_speed_m_s()),
-    row("landing_speed_m_s", Limit::LandingSpeed, |f| f.landing.speed_max_m_s() - f.arc.landing_speed_m_s()),
-    row("takeoff_cone_min_deg", Limit::TakeoffCone, |f| above_deg(f.arc.takeoff_angle(), f.takeoff.slopes())),
-    row("takeoff_cone_max_deg", Limit::TakeoffCone, |f| below_deg(f.arc.takeoff_angle(), f.takeoff.slopes())),
+    row("takeoff_speed_m_s", Limit::TakeoffSpeed, |f| f.takeoff.speed_max_m_s - f.arc.takeoff_speed_m_s()),
+    row("landing_speed_m_s", Limit::LandingSpeed, |f| f.landing.speed_max_m_s - f.arc.landing_speed_m_s()),
+    row("takeoff_cone_min_deg", Limit::TakeoffCone, |f| above_deg(f.arc.takeoff_angle(), f.takeoff.slopes)),
+    row("takeoff_cone_max_deg", Limit::TakeoffCone, |f| below_deg(f.arc.takeoff_angle(), f.takeoff.slopes)),
     row("landing_cone_min_deg", Limit::LandingCone, |f| {
-        if f.hopper.landing.brakes() { f64::INFINITY } else { above_deg(f.arc.landing_angle(), f.landing.slopes()) }
+        if f.hopper.landing.brakes() { f64::INFINITY } else { above_deg(f.arc.landing_angle(), f.landing.slopes) }
     }),
     row("landing_cone_max_deg", Limit::LandingCone, |f| {
-        if f.hopper.landing.brakes() { f64::INFINITY } else { below_deg(f.arc.landing_angle(), f.landing.slopes()) }
+        if f.hopper.landing.brakes() { f64::INFINITY } else { below_deg(f.arc.landing_angle(), f.landing.slopes) }
     }),
     row("line_of_sight_deg", Limit::LineOfSight, |f| f.arc.takeoff_angle().degrees() - f.arc.line_of_sight().angle().degrees()),
-    row("terrain_m", Limit::Terrain, |f| f.height_m),
+    row("terrain_m", Limit::Terrain, |f| f.terrain.map_or(f64::INFINITY, |(height_m, _)| height_m)),
     row("mechanical_angle_min_deg", Limit::MechanicalAngle, |f| {
         f.hopper.takeoff_angle_min.map_or(f64::INFINITY, |_| above_deg(f.arc.takeoff_angle(), f.mechanism))
     }),
@@ -108,18 +109,22 @@ impl HopMargins {
         };
         let [from, to] = [stands(takeoff, Contact::Takeoff), stands(landing, Contact::Landing)];
         let terrain = least_height(test.chain().geometry(), takeoff, landing, arc, test.clearance());
-        let (height_m, terrain_from_takeoff_m) = terrain.unwrap_or((f64::INFINITY, f64::INFINITY));
-        let flown = Flown {
+        Some(Self::of_flown(&Flown {
             arc,
-            takeoff: rule(takeoff, Contact::Takeoff)?,
-            landing: rule(landing, Contact::Landing)?,
+            takeoff: rule(takeoff, Contact::Takeoff)?.contact_limits(),
+            landing: rule(landing, Contact::Landing)?.contact_limits(),
             hopper: test.hopper().limits(),
             mechanism: test.mechanism_slopes(),
-            height_m,
+            terrain,
             rest_deg: [from.0, to.0],
             roughness_m: [from.1, to.1],
-        };
-        Some(Self { values: MARGINS.map(|row| (row.of)(&flown)), terrain_from_takeoff_m })
+        }))
+    }
+
+    /// The margins of a hop over any ground.
+    pub(crate) fn of_flown(flown: &Flown<'_>) -> Self {
+        let terrain_from_takeoff_m = flown.terrain.map_or(f64::INFINITY, |(_, from_takeoff_m)| from_takeoff_m);
+        Self { values: MARGINS.map(|row| (row.of)(flown)), terrain_from_takeoff_m }
     }
 
     /// The margins with these values; a margin without a value belongs to a limit that the hop does not have.

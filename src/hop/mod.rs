@@ -15,6 +15,7 @@ mod terrain;
 
 pub use conflict::{Conflict, Shortfall};
 pub use hop_test::HopTest;
+pub(crate) use margins::Flown;
 pub use margins::{HopMargins, MARGINS, MarginRow};
 pub use reach_along_sight::ReachAlongSight;
 pub use segment_hops::{SegmentHops, SegmentReach, Split};

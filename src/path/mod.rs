@@ -3,12 +3,14 @@
 mod execute;
 mod generate;
 mod hop;
+mod over_mesh;
 mod steps;
 mod timetable;
 
-pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLimit, Violation, execute};
+pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLimit, Violation, execute, execute_over_mesh};
 pub use generate::{PathError, TooManyHops, generate, generate_over};
 pub use hop::{Aim, Hop, HopPath, Propellant, RollOut, Totals, heading_deg};
+pub use over_mesh::path_over_mesh;
 pub use steps::NoCommand;
 pub(crate) use steps::{SteppedGround, nearest_command};
 pub use timetable::{Phase, TimedState, Timetable, TimetableError};

@@ -25,6 +25,7 @@ mod labels;
 mod lattice;
 mod nodes;
 mod objective;
+pub mod roadmap;
 mod route_gap;
 mod search;
 mod surface_hops;

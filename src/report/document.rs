@@ -19,6 +19,8 @@ pub enum DocumentKind {
     CheckPairs,
     /// A path: [`PlanAnswer`](super::PlanAnswer).
     Plan,
+    /// A path over a mesh: [`MeshPlanAnswer`](super::MeshPlanAnswer).
+    PlanMesh,
     /// A path, beside the other files of a run: [`PlanAnswer`](super::PlanAnswer).
     Run,
     /// Trials along a path: [`SimulateAnswer`](super::SimulateAnswer).
@@ -41,12 +43,13 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
         Self::CheckPairs,
         Self::Plan,
+        Self::PlanMesh,
         Self::Run,
         Self::Simulate,
         Self::SimulateExperiment,
@@ -66,6 +69,7 @@ impl DocumentKind {
             Self::Check => "check",
             Self::CheckPairs => "check-pairs",
             Self::Plan => "plan",
+            Self::PlanMesh => "plan-mesh",
             Self::Run => "run",
             Self::Simulate => "simulate",
             Self::SimulateExperiment => "simulate-experiment",

@@ -204,7 +204,8 @@ impl MeshHopAnswer {
 }
 
 impl MeshContactRecord {
-    fn new(ground: &MeshGround, contact: &MeshContact, given_m: [f64; 3]) -> Self {
+    /// From a contact that was asked for at a point.
+    pub fn new(ground: &MeshGround, contact: &MeshContact, given_m: [f64; 3]) -> Self {
         Self {
             given_m,
             point_m: contact.point_m().coords.into(),

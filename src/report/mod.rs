@@ -15,6 +15,7 @@ mod limit_counts;
 mod limit_pair;
 mod map_answer;
 mod mesh_hop_answer;
+mod mesh_plan_answer;
 mod objective_record;
 mod path_record;
 mod plan_answer;
@@ -58,6 +59,8 @@ pub use mesh_hop_answer::{
     MeshBindingRecord, MeshBlockedRecord, MeshContactRecord, MeshFacetRecord, MeshHopAnswer, MeshLimitRecord, MeshWindowEndRecord,
     MeshWindowRecord, mesh_hop_text,
 };
+pub(crate) use mesh_plan_answer::hops_of;
+pub use mesh_plan_answer::{MeshPlanAnswer, RoadmapGapRecord, RoadmapRecord, RoadmapRoundRecord, mesh_plan_text};
 pub use objective_record::{AmountRecord, BudgetRecord, ObjectiveRecord};
 pub use path_record::{
     AimRecord, EnergyBasis, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv,

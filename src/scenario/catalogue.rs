@@ -26,6 +26,10 @@ pub enum Kind {
     AngleRange,
     /// Two numbers `[x, y]` on the map, in metres.
     MapPoint,
+    /// Two numbers `[x, y]` on the map, or three `[x, y, z]` in space, in metres.
+    MapOrSpacePoint,
+    /// Two points `[[x, y, z], [x, y, z]]` in space, in metres: the lowest and the highest corner of a box.
+    SpaceBounds,
     /// Two numbers `[longitude, latitude]`, in degrees.
     LonLat,
     /// `true` or `false`.
@@ -96,6 +100,14 @@ impl Kind {
             Self::AngleOrUnlimited => "an angle from 0 to 90 degrees, or inf".to_owned(),
             Self::AngleRange => "two angles in degrees, [min, max], from -360 to 360, min not above max".to_owned(),
             Self::MapPoint => "two finite numbers in metres, [x, y]".to_owned(),
+            Self::MapOrSpacePoint => {
+                "two finite numbers in metres, [x, y], or for a free route over a mesh three, [x, y, z]".to_owned()
+            }
+            Self::SpaceBounds => {
+                "two corners of a box in metres, the lowest and the highest, [[x, y, z], [x, y, z]], each coordinate of the second above that of \
+                 the first"
+                    .to_owned()
+            }
             Self::LonLat => "[longitude, latitude] in degrees, east positive, from -180 to 360 and from -90 to 90".to_owned(),
             Self::Flag => "true or false".to_owned(),
             Self::LonLats => "a list of positions, each [longitude, latitude] in degrees, [[lon, lat], ...]".to_owned(),
@@ -149,6 +161,8 @@ const ELEVATION_ANGLE: Kind = Kind::Number { min: -90.0, max: 90.0 };
 
 /// The greatest whole number that TOML has.
 pub(super) const MOST: u64 = i64::MAX as u64;
+/// All pairs of so many contacts take minutes, and their windows tens of gigabytes.
+const CONTACTS_MOST: u64 = 200_000;
 
 const EFFORTS: [&str; 4] = [Effort::ALL[0].name(), Effort::ALL[1].name(), Effort::ALL[2].name(), Effort::ALL[3].name()];
 const CHOICES: [&str; 4] =
@@ -161,7 +175,7 @@ const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 93] = [
+pub const CATALOGUE: [Key; 98] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -291,8 +305,18 @@ pub const CATALOGUE: [Key; 93] = [
         Kind::NumberOrNone,
         "stored number that marks missing elevations, or \"none\"; absent: what the file states, and no usual mark as ground",
     ),
-    key("terrain", "start_m", Kind::MapPoint, "start on the map, [x, y], m"),
-    key("terrain", "goal_m", Kind::MapPoint, "goal on the map, [x, y], m"),
+    key(
+        "terrain",
+        "start_m",
+        Kind::MapOrSpacePoint,
+        "start on the map, [x, y], m; of a free route over a mesh [x, y, z], moved to the nearest point of its surface",
+    ),
+    key(
+        "terrain",
+        "goal_m",
+        Kind::MapOrSpacePoint,
+        "goal on the map, [x, y], m; of a free route over a mesh [x, y, z], moved to the nearest point of its surface",
+    ),
     key("terrain", "start_lonlat_deg", Kind::LonLat, "instead: start as [longitude, planetocentric latitude], degrees"),
     key("terrain", "goal_lonlat_deg", Kind::LonLat, "instead: goal as [longitude, planetocentric latitude], degrees"),
     key("terrain", "accept_map_scale", Kind::Flag, "accept a map whose scale is off by over 1 %, with its distances unchanged"),
@@ -307,7 +331,7 @@ pub const CATALOGUE: [Key; 93] = [
         "terrain",
         "route",
         Kind::Word(&ROUTES),
-        "transect: the plane from start to goal; free: any way over the DEM; absent: transect",
+        "transect: the plane from start to goal; free: any way over the DEM or the mesh; absent: transect",
     ),
     key("terrain", "start_x_m", COORDINATE, "start along the chain, m"),
     key("terrain", "goal_x_m", COORDINATE, "goal along the chain, m"),
@@ -318,6 +342,32 @@ pub const CATALOGUE: [Key; 93] = [
         "points inside each segment, or \"auto\": the first of 0, 1, 2, 3, 7, 15, 31 with a path",
     ),
     key("search", "node_spacing_max_m", LENGTH, "instead: greatest spacing of neighbouring points along the ground, m"),
+    key(
+        "search",
+        "contacts_max",
+        Kind::Count { min: 2, max: CONTACTS_MOST },
+        "of a free route over a mesh: most contacts of its roadmap, start and goal included; absent: 4000",
+    ),
+    key(
+        "search",
+        "stand_off_m",
+        Kind::Number { min: 0.0, max: 1e3 },
+        "of a free route over a mesh: how far contacts stand off the surface, along its normal, m; absent: 0",
+    ),
+    key(
+        "search",
+        "bounds_m",
+        Kind::SpaceBounds,
+        "of a free route over a mesh: the box of all contacts, [[x, y, z], [x, y, z]], m; absent: the whole mesh",
+    ),
+    key("search", "seed", Kind::Count { min: 0, max: MOST }, "of a free route over a mesh: seed of its contacts; absent: 0"),
+    key(
+        "search",
+        "time_max_s",
+        LENGTH,
+        "of a free route over a mesh: longest time for its roadmap to grow, judged before every round but the first, s; absent: any, so that \
+         the answer does not depend on the machine",
+    ),
     key("search", "effort", Kind::Word(&EFFORTS), "second criterion after hops; absent: takeoff-speed"),
     key(
         "search",
@@ -478,6 +528,7 @@ mod tests {
             "takeoff_speed_sigma_fraction",
             "takeoff_speed_bias_sigma_fraction",
             "friction_sigma",
+            "contacts_max",
             "hop_limit",
             "trials",
             "seed",

@@ -48,6 +48,10 @@ fn range(angles: AngleInterval) -> Value {
     json!([angles.min.written_degrees(), angles.max.written_degrees()])
 }
 
+fn space_point(at: &nalgebra::Point3<f64>) -> Value {
+    json!([at.x, at.y, at.z])
+}
+
 fn finite(number: f64) -> Option<Value> {
     number.is_finite().then(|| Value::from(number))
 }
@@ -141,11 +145,18 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
     let (mut dem, mut mesh, mut mesh_scale, mut chain) = (None, None, None, None);
     match source {
         Some(TerrainSource::Dem { path, .. }) => dem = Some(file(path)),
-        Some(TerrainSource::Mesh { path, scale, .. }) => (mesh, mesh_scale) = (Some(file(path)), Some((*scale).into())),
+        Some(TerrainSource::Mesh { path, scale, .. } | TerrainSource::MeshInSpace { path, scale, .. }) => {
+            (mesh, mesh_scale) = (Some(file(path)), Some((*scale).into()))
+        }
         Some(TerrainSource::Chain { path }) => chain = Some(file(path)),
         None => {}
     }
     let ends = source.and_then(TerrainSource::map_ends);
+    let in_space = match source {
+        Some(TerrainSource::MeshInSpace { start_m, goal_m, .. }) => [Some(space_point(start_m)), Some(space_point(goal_m))],
+        _ => [None, None],
+    };
+    let [start_in_space, goal_in_space] = in_space;
     let metres = |place: &MapPlace| match place {
         MapPlace::Metres(point) => Some(json!([point.x, point.y])),
         MapPlace::LonLat(_) => None,
@@ -164,8 +175,8 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         ("mesh", mesh),
         ("mesh_scale", mesh_scale),
         ("chain", chain),
-        ("start_m", ends.as_ref().and_then(|[start, _]| metres(start))),
-        ("goal_m", ends.as_ref().and_then(|[_, goal]| metres(goal))),
+        ("start_m", ends.as_ref().and_then(|[start, _]| metres(start)).or(start_in_space)),
+        ("goal_m", ends.as_ref().and_then(|[_, goal]| metres(goal)).or(goal_in_space)),
         ("start_lonlat_deg", ends.as_ref().and_then(|[start, _]| degrees(start))),
         ("goal_lonlat_deg", ends.as_ref().and_then(|[_, goal]| degrees(goal))),
         (
@@ -196,6 +207,14 @@ fn search(scenario: &Scenario) -> Value {
     object([
         ("points_per_segment", points),
         ("node_spacing_max_m", spacing),
+        ("contacts_max", scenario.mesh_search.contacts_max.map(Value::from)),
+        ("stand_off_m", scenario.mesh_search.stand_off_m.map(Value::from)),
+        (
+            "bounds_m",
+            scenario.mesh_search.bounds.map(|bounds| Value::from(vec![space_point(&bounds.min), space_point(&bounds.max)])),
+        ),
+        ("seed", scenario.mesh_search.seed.map(Value::from)),
+        ("time_max_s", scenario.mesh_search.time_max_s.map(Value::from)),
         ("effort", scenario.objective.is_none().then(|| search.effort.name().into())),
         // Without one, the search is over several commands.
         ("takeoff_angle", (scenario.commands == SearchedCommands::Chosen).then(|| search.takeoff.name().into())),

@@ -323,6 +323,21 @@ impl Entries {
         self.value(table, name).and_then(pair)
     }
 
+    /// Three numbers; `None` if they were not given.
+    pub(super) fn triple(&self, table: &str, name: &str) -> Option<[f64; 3]> {
+        self.value(table, name).and_then(triple)
+    }
+
+    /// Two corners of a box; `None` if they were not given.
+    pub(super) fn corners(&self, table: &str, name: &str) -> Option<[[f64; 3]; 2]> {
+        self.value(table, name).and_then(corners)
+    }
+
+    /// Whether the keys ask for a free route over a mesh.
+    pub fn ask_for_free_mesh(&self) -> bool {
+        self.text("terrain", "mesh").is_some() && self.text("terrain", "route") == Some(super::Route::Free.name())
+    }
+
     /// Speeds; `None` if they were not given.
     pub(super) fn speeds(&self, table: &str, name: &str) -> Option<SpeedLevels> {
         self.value(table, name).and_then(speeds)
@@ -509,6 +524,22 @@ fn pair(value: &toml::Value) -> Option<[f64; 2]> {
     }
 }
 
+/// An array of three numbers.
+fn triple(value: &toml::Value) -> Option<[f64; 3]> {
+    match value.as_array()?.as_slice() {
+        [a, b, c] => Some([number(a)?, number(b)?, number(c)?]),
+        _ => None,
+    }
+}
+
+/// An array of two arrays of three numbers.
+fn corners(value: &toml::Value) -> Option<[[f64; 3]; 2]> {
+    match value.as_array()?.as_slice() {
+        [low, high] => Some([triple(low)?, triple(high)?]),
+        _ => None,
+    }
+}
+
 /// An array of ascending speeds.
 fn speeds(value: &toml::Value) -> Option<SpeedLevels> {
     let speeds: Option<Vec<f64>> = value.as_array()?.iter().map(number).collect();
@@ -522,6 +553,11 @@ fn objective(value: &toml::Value) -> Option<Objective> {
     Objective::new(value.as_array()?.iter().map(named).collect::<Option<Vec<_>>>()?).ok()
 }
 
+/// Whether a number may be a coordinate, m.
+fn is_coordinate(number: f64) -> bool {
+    number.abs() <= 1e12
+}
+
 /// Whether a value is of a kind.
 pub(crate) fn fits(value: &toml::Value, kind: Kind) -> bool {
     match kind {
@@ -530,7 +566,11 @@ pub(crate) fn fits(value: &toml::Value, kind: Kind) -> bool {
             value.as_str() == Some("inf") || number(value).is_some_and(|n| (0.0..=90.0).contains(&n) || n == f64::INFINITY)
         }
         Kind::AngleRange => pair(value).is_some_and(|[a, b]| -360.0 <= a && a <= b && b <= 360.0),
-        Kind::MapPoint => pair(value).is_some_and(|p| p.iter().all(|c| c.is_finite() && c.abs() <= 1e12)),
+        Kind::MapPoint => pair(value).is_some_and(|p| p.iter().copied().all(is_coordinate)),
+        Kind::MapOrSpacePoint => fits(value, Kind::MapPoint) || triple(value).is_some_and(|p| p.iter().copied().all(is_coordinate)),
+        Kind::SpaceBounds => corners(value).is_some_and(|[low, high]| {
+            low.iter().zip(&high).all(|(low, high)| is_coordinate(*low) && is_coordinate(*high) && low < high)
+        }),
         Kind::LonLat => pair(value).is_some_and(|[lon, lat]| (-180.0..=360.0).contains(&lon) && (-90.0..=90.0).contains(&lat)),
         Kind::Flag => value.as_bool().is_some(),
         Kind::LonLats => value.as_array().is_some_and(|places| places.iter().all(|place| fits(place, Kind::LonLat))),

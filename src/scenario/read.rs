@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{
-    Budget, Entries, Place, ProblemKind, Route, ScenarioProblem, TerrainSource, UncertaintyKeys,
+    Budget, Entries, MeshSearch, Place, ProblemKind, Route, ScenarioProblem, TerrainSource, UncertaintyKeys,
     propulsion::{self, landing},
     terrain_source::{terrain, via},
 };
@@ -70,6 +70,8 @@ pub struct Scenario {
     pub goal_x_m: Option<f64>,
     /// How to search.
     pub search: SearchOptions,
+    /// How to search for a free route over a mesh.
+    pub mesh_search: MeshSearch,
     /// How path choice weighs reliability.
     pub risk: ReliabilityUse,
     /// Hops beyond the fewest that a more reliable path may take, if hops are traded for reliability.
@@ -112,12 +114,16 @@ impl Scenario {
         let terrain = terrain(&mut entries);
         let via = via(&mut entries, terrain.as_ref());
         let route = super::route::route(&mut entries, terrain.as_ref());
+        let mesh_search = super::mesh_search::mesh_search(&mut entries, terrain.as_ref());
         let [friction_raster, keep_out] = overlays(&mut entries, &surface, terrain.as_ref());
         let derating = super::derating::derating(&mut entries, &hopper, &surface);
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
         let budget = super::budget::budget(&entries);
         let (objective, commands, wanted_angle) = super::budget::objective(&mut entries, budget, &hopper, uncertainty.as_ref());
         let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries, uncertainty.as_ref(), budget);
+        // Nothing estimates the reliability of hops over a mesh.
+        let over_mesh = matches!(terrain, Some(TerrainSource::MeshInSpace { .. }));
+        let (risk, risk_extra_hops_max) = if over_mesh { (ReliabilityUse::Ignored, None) } else { (risk, risk_extra_hops_max) };
         super::budget::check(&mut entries, budget, risk, uncertainty.as_ref());
         let takeoff = wanted_angle.unwrap_or_else(|| super::trials::takeoff_choice(risk, uncertainty.as_ref()));
         let search = search(&mut entries, takeoff);
@@ -144,6 +150,7 @@ impl Scenario {
             start_x_m: entries.number("terrain", "start_x_m"),
             goal_x_m: entries.number("terrain", "goal_x_m"),
             search,
+            mesh_search,
             risk,
             risk_extra_hops_max,
             budget,

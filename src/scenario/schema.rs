@@ -43,6 +43,8 @@ fn of_kind(kind: Kind) -> Value {
         Kind::AngleOrUnlimited => json!({ "anyOf": [number(0.0, 90.0), { "const": "inf" }] }),
         Kind::AngleRange => pair(&[number(-360.0, 360.0), number(-360.0, 360.0)]),
         Kind::MapPoint => pair(&[number(-1e12, 1e12), number(-1e12, 1e12)]),
+        Kind::MapOrSpacePoint => json!({ "anyOf": [of_kind(Kind::MapPoint), space_point()] }),
+        Kind::SpaceBounds => pair(&[space_point(), space_point()]),
         Kind::LonLat => pair(&[number(-180.0, 360.0), number(-90.0, 90.0)]),
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::MapPoints => list(of_kind(Kind::MapPoint), 0),
@@ -66,7 +68,12 @@ fn of_kind(kind: Kind) -> Value {
     }
 }
 
-/// Two numbers.
+/// Three numbers in metres.
+fn space_point() -> Value {
+    json!({ "type": "array", "items": { "type": "number", "minimum": -1e12, "maximum": 1e12 }, "minItems": 3, "maxItems": 3 })
+}
+
+/// Two values.
 fn pair(numbers: &[Value; 2]) -> Value {
     json!({ "type": "array", "prefixItems": numbers, "minItems": 2, "maxItems": 2 })
 }

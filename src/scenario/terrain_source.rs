@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Entries, Place, ProblemKind};
+use nalgebra::Point3;
+
+use super::{Entries, Place, ProblemKind, Route};
 use crate::{
     quantity::MapPoint,
     terrain::{LonLat, MapPlace},
@@ -31,6 +33,17 @@ pub enum TerrainSource {
         /// Where it ends.
         goal: MapPoint,
     },
+    /// A triangulated surface with two points near it, for a route in any direction.
+    MeshInSpace {
+        /// The file's path, relative to the scenario's folder.
+        path: PathBuf,
+        /// Metres per unit of the file.
+        scale: f64,
+        /// Where the route begins, before it is moved to the surface, m.
+        start_m: Point3<f64>,
+        /// Where it ends, before it is moved to the surface, m.
+        goal_m: Point3<f64>,
+    },
     /// A chain CSV.
     Chain {
         /// The file's path, relative to the scenario's folder.
@@ -42,16 +55,16 @@ impl TerrainSource {
     /// The file's path, relative to the scenario's folder.
     pub fn path(&self) -> &Path {
         match self {
-            Self::Dem { path, .. } | Self::Mesh { path, .. } | Self::Chain { path } => path,
+            Self::Dem { path, .. } | Self::Mesh { path, .. } | Self::MeshInSpace { path, .. } | Self::Chain { path } => path,
         }
     }
 
-    /// The ends of the slice on the map; `None` for a chain.
+    /// The ends of the slice on the map; `None` for a chain, and for a mesh without a slice.
     pub fn map_ends(&self) -> Option<[MapPlace; 2]> {
         match self {
             Self::Dem { start, goal, .. } => Some([*start, *goal]),
             Self::Mesh { start, goal, .. } => Some([*start, *goal].map(MapPlace::Metres)),
-            Self::Chain { .. } => None,
+            Self::MeshInSpace { .. } | Self::Chain { .. } => None,
         }
     }
 }
@@ -89,7 +102,20 @@ pub(super) fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
             refuse_map_points(entries);
             Some(TerrainSource::Chain { path: path.clone() })
         }
+        [("mesh", path)] if entries.text("terrain", "route") == Some(Route::Free.name()) => {
+            let [start_m, goal_m] = ends_in_space(entries)?.map(Point3::from);
+            Some(TerrainSource::MeshInSpace { path: path.clone(), scale: scale.unwrap_or(1.0), start_m, goal_m })
+        }
         [(kind, path)] => {
+            for end in ["start_m", "goal_m"] {
+                if entries.triple("terrain", end).is_some() {
+                    let message =
+                        format!("terrain.{end} has three numbers, expected two, [x, y], where terrain has a {kind} that is sliced");
+                    let help =
+                        "leave z out, or for a route over a mesh in any direction give mesh = \"file.obj\" with route = \"free\"";
+                    entries.problem(("terrain", end), ProblemKind::Value, message, help);
+                }
+            }
             let [start, goal] = map_ends(entries, kind)?;
             let path = path.clone();
             Some(match *kind {
@@ -110,6 +136,33 @@ pub(super) fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
             None
         }
     }
+}
+
+/// Start and goal near a mesh, which a free route over it needs.
+fn ends_in_space(entries: &mut Entries) -> Option<[[f64; 3]; 2]> {
+    let mut of_end = |end: &str| {
+        let (key, degrees) = (format!("{end}_m"), format!("{end}_lonlat_deg"));
+        let help = format!(
+            "give {key} = [x, y, z], in the mesh's own metres: the route begins and ends at the nearest points of its surface"
+        );
+        if entries.value("terrain", &degrees).is_some() {
+            let message = "terrain gives longitude and latitude for a mesh, which has no projection".to_owned();
+            entries.problem(("terrain", &degrees), ProblemKind::Conflict, message, help);
+            return None;
+        }
+        let found = entries.triple("terrain", &key);
+        if found.is_none() && entries.value("terrain", &key).is_some() {
+            let message = format!("terrain.{key} has two numbers, expected three, [x, y, z], for a free route over a mesh");
+            entries.problem(("terrain", &key), ProblemKind::Value, message, help);
+        } else if found.is_none() && !entries.has_refused("terrain", &[&key]) {
+            let at = entries.place("terrain", "mesh").unwrap_or(Place::Nowhere);
+            let message = format!("terrain has a mesh and route = \"free\" but no {key}");
+            entries.problem_at(at, ("terrain", &key), ProblemKind::Missing, message, help);
+        }
+        found
+    };
+    let (start, goal) = (of_end("start"), of_end("goal"));
+    Some([start?, goal?])
 }
 
 /// Start and goal on the map, which a slice needs.

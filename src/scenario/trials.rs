@@ -122,7 +122,7 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
 
 /// Whether hops have a heading over this terrain.
 const fn is_on_a_map(terrain: Option<&TerrainSource>) -> bool {
-    matches!(terrain, None | Some(TerrainSource::Dem { .. }))
+    matches!(terrain, None | Some(TerrainSource::Dem { .. } | TerrainSource::MeshInSpace { .. }))
 }
 
 /// How risk weighs, and how many extra hops it may cost. Where errors are given, hops are traded for reliability unless the scenario says

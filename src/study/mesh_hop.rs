@@ -52,7 +52,7 @@ pub enum MeshHopError {
         problem: TooLarge,
     },
     /// A key that has no meaning on a mesh, and that an answer would have to obey.
-    #[error("found {key}, which is {what}, expected a scenario without it for a hop over a mesh: remove it")]
+    #[error("found {key}, which is {what}, expected a scenario without it for hops over a mesh: remove it")]
     NotOnAMesh {
         /// The key.
         key: &'static str,
@@ -105,16 +105,7 @@ pub struct MeshHopped {
 pub fn mesh_hop(question: &MeshHopQuestion<'_>) -> Result<MeshHopped, MeshHopError> {
     let MeshHopQuestion { scenario, mesh, scale, ends_m } = question;
     check_keys(scenario)?;
-    let read = read_mesh_with(mesh, *scale, scenario.no_data)?;
-    let mut warnings = read.warnings;
-    let too_large = |problem| MeshHopError::TooLarge { file: mesh.to_path_buf(), problem };
-    warnings.extend(check_extent(&scenario.body, &Extent::of_mesh(&read.mesh.bounds())).map_err(too_large)?);
-    let tree = MeshTree::new(read.mesh);
-    warnings.extend(inside_out(&tree));
-    let planned = scenario.derated();
-    let planned = planned.as_ref().unwrap_or(scenario);
-    let hopper = planned.hopper.with_any_command();
-    let ground = MeshGround::new(tree, &hopper, scenario.body.gravity, &planned.surface)?;
+    let (ground, mut warnings) = mesh_ground(scenario, mesh, *scale)?;
     let contact = |at, end| ground.contact(at).map_err(|problem| MeshHopError::NoContact { end, problem });
     let contacts = [contact(ends_m[0], "take-off")?, contact(ends_m[1], "landing")?];
     let [takeoff, landing] = &contacts;
@@ -183,8 +174,22 @@ impl MeshHopped {
     }
 }
 
+/// The ground of a mesh under the limits that planning may use, for exact commands, and warnings about the mesh.
+pub(super) fn mesh_ground(scenario: &Scenario, file: &Path, scale: f64) -> Result<(MeshGround, Vec<String>), MeshHopError> {
+    let read = read_mesh_with(file, scale, scenario.no_data)?;
+    let mut warnings = read.warnings;
+    let too_large = |problem| MeshHopError::TooLarge { file: file.to_path_buf(), problem };
+    warnings.extend(check_extent(&scenario.body, &Extent::of_mesh(&read.mesh.bounds())).map_err(too_large)?);
+    let tree = MeshTree::new(read.mesh);
+    warnings.extend(inside_out(&tree));
+    let planned = scenario.derated();
+    let planned = planned.as_ref().unwrap_or(scenario);
+    let hopper = planned.hopper.with_any_command();
+    Ok((MeshGround::new(tree, &hopper, scenario.body.gravity, &planned.surface)?, warnings))
+}
+
 /// Refuses the keys that restrict contacts by a map.
-fn check_keys(scenario: &Scenario) -> Result<(), MeshHopError> {
+pub(super) fn check_keys(scenario: &Scenario) -> Result<(), MeshHopError> {
     let refused = [
         ("surface.keep_out", "laid over a map", scenario.keep_out.is_some()),
         ("surface.friction_raster", "laid over a map", scenario.friction_raster.is_some()),

@@ -5,7 +5,7 @@
 //! writes files. What a result says of its question comes from [`Case::record`].
 //!
 //! ```text
-//! hop          one hop, limit by limit; mesh_hop over a mesh
+//! hop          one hop, limit by limit; mesh_hop over a mesh, mesh_route a path over one
 //! check        whether a path exists; check_pairs for many pairs
 //! plan         the path of fewest hops, with a proof and flown again if that is wanted
 //! simulate     how reliably a plan is flown; experiment for the experiments
@@ -38,6 +38,7 @@ mod journey_path;
 pub mod map;
 mod measured;
 mod mesh_hop;
+mod mesh_route;
 mod nodes;
 mod objective;
 mod on_body;
@@ -78,6 +79,7 @@ pub use hop::{HopError, Hopped, hop};
 pub use journey::{JourneyError, Proof};
 pub use measured::with_measured_errors;
 pub use mesh_hop::{MeshHopError, MeshHopQuestion, MeshHopped, mesh_hop};
+pub use mesh_route::{MeshRouteError, MeshRouteQuestion, MeshRouted, mesh_route};
 pub use on_body::{OfBody, dem_on_body, on_body};
 pub use physics::{Extent, Extremes, TooLarge, constant_gravity_warnings};
 pub use pipeline::{DemReading, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, friction, prepare, sha256_of};

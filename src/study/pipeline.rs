@@ -118,6 +118,12 @@ pub enum PipelineError {
         /// The position, and the extent of the chain.
         problem: OffChain,
     },
+    /// A mesh that is not sliced.
+    #[error(
+        "terrain.route is \"free\" over a mesh, which a plan alone answers: for any other question give start_m and goal_m = [x, y] with \
+         route = \"transect\", along the upper surface, or a dem"
+    )]
+    NotSliced,
     /// A terrain that is larger than the body it is said to lie on.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
@@ -193,6 +199,7 @@ impl Survey {
                 let read = Transect::of_mesh(&base.join(path), (*scale, scenario.no_data), [*start, *goal], &via);
                 on_body(body, read.map_err(|error| error.of_journey(Some(*start), Some(*goal))))?
             }
+            TerrainSource::MeshInSpace { .. } => return Err(PipelineError::NotSliced),
             TerrainSource::Chain { path } => {
                 let (file, _) = on_body(body, Ok(csv::read_chain_csv_file_with(base.join(path), scenario.no_data)?))?;
                 return Ok(Self { ground: Surveyed::Chain(file.chain), projection: file.projection, warnings: file.warnings });
@@ -205,7 +212,7 @@ impl Survey {
             TerrainSource::Dem { path, .. } => {
                 Some(SlicedDem::of(base.join(path), DemReading::of(scenario), &transect.legs, &scenario.hopper)?)
             }
-            TerrainSource::Mesh { .. } | TerrainSource::Chain { .. } => None,
+            TerrainSource::Mesh { .. } | TerrainSource::MeshInSpace { .. } | TerrainSource::Chain { .. } => None,
         };
         let ground = Surveyed::Slice { legs: transect.legs, overlays: Box::new(overlays), dem };
         Ok(Self { ground, projection: transect.projection, warnings })

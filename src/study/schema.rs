@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use crate::{
     report::{
         CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshHopAnswer,
-        PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
+        MeshPlanAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
     },
     scenario::scenario_schema,
 };
@@ -52,6 +52,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Check => derived::<CheckAnswer>(),
         DocumentKind::CheckPairs => derived::<PairsAnswer>(),
         DocumentKind::Plan | DocumentKind::Run => derived::<PlanAnswer>(),
+        DocumentKind::PlanMesh => derived::<MeshPlanAnswer>(),
         DocumentKind::Simulate => derived::<SimulateAnswer>(),
         DocumentKind::SimulateExperiment => derived::<ExperimentAnswer>(),
         DocumentKind::Require => derived::<RequireAnswer>(),

@@ -24,6 +24,7 @@ impl Simulation {
                 self.successes(policy, ground, plan, ground.test().chain().geometry().vertices().len())
             }
             GroundAndPlan::Map(ground, plan) => self.successes(policy, ground, plan, 1),
+            GroundAndPlan::Mesh(ground, plan) => self.successes(policy, ground, plan, 1),
         }
     }
 

@@ -8,9 +8,10 @@ use std::{
 use sha2::{Digest, Sha256};
 
 use crate::{
+    ballistics::TakeoffChoice,
     chain::Station,
     graph::{Corridor, CostToGo, PostCosts, PostRisks},
-    ground::{ChainGround, ContactPoint, DemGround, Surface},
+    ground::{ChainGround, ContactPoint, DemGround, MeshContact, MeshGround, Surface},
     hop::HopTest,
     path::HopPath,
     terrain::{FrictionRaster, KeepOut},
@@ -35,6 +36,7 @@ pub struct Mission {
 pub(super) enum MissionGround {
     Chain(ChainGround),
     Map(DemGround),
+    Mesh(MeshGround),
 }
 
 /// The data for replanning.
@@ -48,6 +50,17 @@ pub(super) enum Replanning {
     PostCosts(Arc<PostCosts>),
     /// The risks-to-go of the posts of the DEM.
     PostRisks(Arc<PostRisks>),
+    /// Contacts of a mesh.
+    Contacts(Arc<MeshAims>),
+}
+
+/// Contacts of a mesh that a trial may be replanned to, and how many hops lead on from each of them to the goal.
+#[derive(Clone, Debug)]
+pub struct MeshAims {
+    /// The contacts, with the number of hops from each of them to the goal.
+    pub contacts: Vec<(MeshContact, u64)>,
+    /// Which arc of a window is flown.
+    pub choice: TakeoffChoice,
 }
 
 impl Mission {
@@ -62,6 +75,11 @@ impl Mission {
         Self { ground: MissionGround::Map(ground), path, start, goal, replanning: None, planned_over: None }
     }
 
+    /// A path over a mesh, under overhangs and through caves: flights follow their heading, up to the first facet that they meet.
+    pub const fn over_mesh(ground: MeshGround, path: HopPath, start: ContactPoint, goal: ContactPoint) -> Self {
+        Self { ground: MissionGround::Mesh(ground), path, start, goal, replanning: None, planned_over: None }
+    }
+
     /// SHA-256 of all that trials depend on, besides errors and options, in hexadecimal: equal for the same mission and the same version
     /// of this crate. It reads every post of a DEM.
     pub(super) fn digest(&self) -> String {
@@ -73,6 +91,10 @@ impl Mission {
             MissionGround::Map(ground) => {
                 let _ = limits_text(&mut digest, ground);
                 write!(digest, "{:?}", ground.terrain().dem())
+            }
+            MissionGround::Mesh(ground) => {
+                let mesh = ground.tree().mesh();
+                write!(digest, "{:?}{:?}{:?}{:?}", ground.envelope(), ground.surface(), mesh.vertices(), mesh.indices())
             }
         };
         match &self.replanning {
@@ -88,6 +110,9 @@ impl Mission {
             }
             Some(Replanning::PostRisks(to_go)) => {
                 let _ = write!(digest, "{to_go:?}");
+            }
+            Some(Replanning::Contacts(aims)) => {
+                let _ = write!(digest, "{aims:?}");
             }
             None => {}
         }
@@ -121,6 +146,13 @@ impl Mission {
     #[must_use]
     pub fn with_replanning_over_posts(self, to_go: Arc<PostCosts>) -> Self {
         Self { replanning: Some(Replanning::PostCosts(to_go)), ..self }
+    }
+
+    /// The same mission over a mesh, whose trials may also be replanned: from where the hopper is, to the contact with the fewest hops to
+    /// the goal that one hop reaches.
+    #[must_use]
+    pub fn with_replanning_to_contacts(self, aims: MeshAims) -> Self {
+        Self { replanning: Some(Replanning::Contacts(Arc::new(aims))), ..self }
     }
 
     /// The same by the most reliable way, from the start on.

@@ -55,6 +55,7 @@ mod quantiles;
 mod rates;
 mod record;
 mod replan;
+mod replan_mesh;
 mod scatter;
 mod simulation;
 mod summary;
@@ -66,7 +67,7 @@ pub use crate::{
     flight::{Distribution, DrawnErrors, ErrorKey, MeasuredErrors, Uncertainty, UncertaintyProblem},
     ground::LiftoffVelocity,
 };
-pub use mission::Mission;
+pub use mission::{MeshAims, Mission};
 pub use options::{MissionPoint, Observer, SimulationError, TrialOptions};
 pub use outcome::{OutcomeCounts, Policy, TrialOutcome};
 pub use paired::PairedDifference;

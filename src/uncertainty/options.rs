@@ -137,6 +137,28 @@ pub enum SimulationError {
         /// North, m.
         y_m: f64,
     },
+    /// A point off the mesh, in a simulation over it.
+    #[error(
+        "{which} is at {point_m:?} m, off the surface of the mesh, expected a point on it: give the mesh that the path was planned over"
+    )]
+    NotOnMesh {
+        /// Which point.
+        which: MissionPoint,
+        /// The point, m.
+        point_m: [f64; 3],
+    },
+    /// A hop straight up.
+    #[error("{which} lands right over its take-off or below it, expected two different places: it has no heading")]
+    NoCourse {
+        /// Which hop.
+        which: MissionPoint,
+    },
+    /// Errors of heights, which belong to ground with one height at every place.
+    #[error("the heights of the ground have a standard deviation of {sigma_m} m, expected none over a mesh: set it to 0")]
+    HeightsOfMesh {
+        /// What was given, m.
+        sigma_m: f64,
+    },
     /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

@@ -63,6 +63,7 @@ impl Simulation {
         match &self.ground_and_plan {
             GroundAndPlan::Chain(ground, plan) => scatters(ground, plan, &errors),
             GroundAndPlan::Map(ground, plan) => scatters(ground, plan, &errors),
+            GroundAndPlan::Mesh(ground, plan) => scatters(ground, plan, &errors),
         }
     }
 }

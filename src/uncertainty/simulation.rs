@@ -10,14 +10,15 @@ use super::{
     mission::{MissionGround, Replanning},
     post_replan::{CheapestPost, ReliablePost},
     replan::{ChainReplan, CorridorReplan, MapReplan, Replan},
+    replan_mesh::ContactReplan,
     tally::{Flights, PlannedPlaces, Statistics, Tally},
     trial::{Flown, Plan, PlannedHop, Rules, Tank, fly},
 };
 use crate::{
     flight::{Command, Errors, TrialDraws, Uncertainty},
     ground::{
-        ChainGround, ChainPosition, ContactPoint, DemGround, FirstContact, LiftoffVelocity, MapPosition, Surface, Windows,
-        heading_of,
+        ChainGround, ChainPosition, ContactPoint, DemGround, FirstContact, LiftoffVelocity, MapPosition, MeshGround, MeshPosition,
+        Surface, Windows, heading_of,
     },
     path::Hop,
     progress::{Detail, Meter, Progress, Stage},
@@ -45,6 +46,7 @@ pub struct Simulation {
 pub(super) enum GroundAndPlan {
     Chain(ChainGround, Plan<ChainPosition>),
     Map(DemGround, Plan<MapPosition>),
+    Mesh(MeshGround, Plan<MeshPosition>),
 }
 
 /// The end of a flight.
@@ -64,7 +66,7 @@ impl Simulation {
     /// # Errors
     /// [`SimulationError`] if the deviations are invalid, or path and map do not match.
     pub fn new(mission: &Mission, uncertainty: Uncertainty) -> Result<Self, SimulationError> {
-        uncertainty.check(matches!(mission.ground, MissionGround::Map(_)))?;
+        uncertainty.check(!matches!(mission.ground, MissionGround::Chain(_)))?;
         let ground_and_plan = match &mission.ground {
             MissionGround::Chain(ground) => GroundAndPlan::Chain(ground.clone(), chain_plan(mission)?),
             MissionGround::Map(ground) => {
@@ -72,6 +74,12 @@ impl Simulation {
                     return Err(SimulationError::NoGrip);
                 }
                 GroundAndPlan::Map(ground.clone(), map_plan(mission, ground)?)
+            }
+            MissionGround::Mesh(ground) => {
+                if uncertainty.height_sigma_m > 0.0 {
+                    return Err(SimulationError::HeightsOfMesh { sigma_m: uncertainty.height_sigma_m });
+                }
+                GroundAndPlan::Mesh(ground.clone(), mesh_plan(mission, ground)?)
             }
         };
         Ok(Self { mission: mission.clone(), uncertainty, ground_and_plan })
@@ -148,6 +156,7 @@ impl Simulation {
         match &self.ground_and_plan {
             GroundAndPlan::Chain(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
             GroundAndPlan::Map(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
+            GroundAndPlan::Mesh(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
         }
     }
 
@@ -192,7 +201,8 @@ impl Simulation {
     }
 
     /// Flies one hop from a position of the nominal ground to its first contact. If the velocity points into the ground, the
-    /// contact is the take-off point. No limit is checked. `None` if there is no ground at that position.
+    /// contact is the take-off point. No limit is checked. `None` if there is no ground at that position, and over a mesh, of which several
+    /// surfaces may lie there.
     ///
     /// `from`: x and y as in [`HopRecord`](super::HopRecord).
     pub fn fly(&self, from: Point2<f64>, liftoff: LiftoffVelocity) -> Option<FlightEnd> {
@@ -202,6 +212,7 @@ impl Simulation {
                 Some(flown(ground, &ChainPosition { station, left_m: from.y }, &liftoff))
             }
             GroundAndPlan::Map(ground, _) => Some(flown(ground, &ground.position(from)?, &liftoff)),
+            GroundAndPlan::Mesh(..) => None,
         }
     }
 
@@ -226,6 +237,7 @@ impl Simulation {
         let replans = match &self.ground_and_plan {
             GroundAndPlan::Chain(_, plan) => plan.replan.is_some(),
             GroundAndPlan::Map(_, plan) => plan.replan.is_some(),
+            GroundAndPlan::Mesh(_, plan) => plan.replan.is_some(),
         };
         if policy == Policy::Replan && !replans {
             return Err(SimulationError::NoCostsToGo);
@@ -258,7 +270,7 @@ impl Simulation {
         let mut tally = Statistics::new(PlannedPlaces {
             landings: plan.hops.iter().map(|hop| place(&hop.command.aim)).collect(),
             goal: [plan.goal.x, plan.goal.y],
-            on_a_map: matches!(self.ground_and_plan, GroundAndPlan::Map(..)),
+            on_a_map: !matches!(self.ground_and_plan, GroundAndPlan::Chain(..)),
         });
         let mut trajectories = Vec::new();
         let last = options.first_trial + options.trials;
@@ -347,9 +359,9 @@ fn chain_plan(mission: &Mission) -> Result<Plan<ChainPosition>, SimulationError>
         Some(Replanning::Nodes { test, to_go }) => {
             Some(Box::new(ChainReplan { test: test.as_ref().clone(), to_go: Arc::clone(to_go) }) as _)
         }
-        Some(Replanning::Corridor(_) | Replanning::PostCosts(_) | Replanning::PostRisks(_)) | None => None,
+        Some(_) | None => None,
     };
-    let goal = Point2::new(mission.goal.along_m, 0.0);
+    let goal = Point3::new(mission.goal.along_m, 0.0, mission.goal.point_m.z);
     Ok(Plan { start: position(&mission.start, MissionPoint::Start)?, goal, hops, replan })
 }
 
@@ -385,7 +397,31 @@ fn map_plan(mission: &Mission, ground: &DemGround) -> Result<Plan<MapPosition>, 
         Some(Replanning::Corridor(corridor)) => Some(Box::new(CorridorReplan { corridor: Arc::clone(corridor) })),
         Some(Replanning::PostCosts(to_go)) => Some(Box::new(CheapestPost::new(planning, to_go))),
         Some(Replanning::PostRisks(to_go)) => Some(Box::new(ReliablePost::new(planning, to_go))),
-        None => None,
+        Some(Replanning::Contacts(_)) | None => None,
     };
-    Ok(Plan { start, goal: goal.at, hops, replan })
+    Ok(Plan { start, goal: ground.point(&goal), hops, replan })
+}
+
+/// The plan over a mesh.
+fn mesh_plan(mission: &Mission, ground: &MeshGround) -> Result<Plan<MeshPosition>, SimulationError> {
+    let position = |point: &ContactPoint, which| {
+        let own = ground.contact_at(point).filter(|own| own.point_m == point.point_m);
+        own.ok_or(SimulationError::NotOnMesh { which, point_m: point.point_m.coords.into() })
+    };
+    let planned = mission.path.hops.iter().enumerate().map(|(i, hop)| {
+        let which = MissionPoint::Hop(i + 1);
+        let (from, aim) = (position(&hop.takeoff, which)?, position(&hop.landing, which)?);
+        let (_, heading) = Surface::course(ground, &from, &aim).ok_or(SimulationError::NoCourse { which })?;
+        Ok(PlannedHop { from, command: command(hop, heading, aim) })
+    });
+    let hops = planned.collect::<Result<_, SimulationError>>()?;
+    let (start, goal) = (position(&mission.start, MissionPoint::Start)?, position(&mission.goal, MissionPoint::Goal)?);
+    let replan: Option<Box<dyn Replan<MeshPosition>>> = match &mission.replanning {
+        // A hop to a contact has no nearest command in steps here.
+        Some(Replanning::Contacts(contacts)) if ground.hopper().limits().steps.is_continuous() => {
+            Some(Box::new(ContactReplan::new(ground.clone(), contacts)))
+        }
+        _ => None,
+    };
+    Ok(Plan { start, goal: goal.point_m, hops, replan })
 }

@@ -14,7 +14,7 @@ use crate::{
 #[derive(Debug)]
 pub(super) struct Plan<C> {
     pub(super) start: C,
-    pub(super) goal: Point2<f64>,
+    pub(super) goal: Point3<f64>,
     pub(super) hops: Vec<PlannedHop<C>>,
     /// For [`Policy::Replan`].
     pub(super) replan: Option<Box<dyn Replan<C>>>,
@@ -137,7 +137,7 @@ pub(super) fn fly<G: FirstContact + Windows>(
         last.outcome = Some(outcome);
     }
     let end_m = journey.ground.point(&journey.position);
-    let goal_distance_m = (end_m.xy() - plan.goal).norm();
+    let goal_distance_m = journey.ground.apart_m(&end_m, &plan.goal);
     flown.trials.push(TrialRecord { trial, outcome, hops: journey.hops, end_m, goal_distance_m });
 }
 
@@ -178,7 +178,7 @@ impl<G: FirstContact + Windows> Journey<'_, G> {
     }
 
     fn is_at_goal(&self, position: &G::Contact) -> bool {
-        (self.ground.point(position).xy() - self.plan.goal).norm() <= self.rules.goal_tolerance_m
+        self.ground.apart_m(&self.ground.point(position), &self.plan.goal) <= self.rules.goal_tolerance_m
     }
 
     /// The outcome of a journey that the robot ends here on purpose.
@@ -210,7 +210,7 @@ impl<G: FirstContact + Windows> Journey<'_, G> {
         let FlownHop { rest, landed, .. } = flown;
         let outcome = flown.failure.map(outcome_of);
         let (aim_m, rest_m) = (ground.point(rest_aim), ground.point(&rest));
-        let error_m = (rest_m - aim_m).xy().norm();
+        let error_m = ground.apart_m(&rest_m, &aim_m);
         let landing = landed.then(|| Landing { hop: self.hops, error_m, rest: rest_m.xy() });
         self.hops += 1;
         self.position = rest;

@@ -6,7 +6,7 @@ use std::{collections::BTreeSet, path::Path, sync::OnceLock};
 
 use chta::report::{
     CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
-    MeshHopAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
+    MeshHopAnswer, MeshPlanAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
 use serde::{Serialize, de::DeserializeOwned};
@@ -120,6 +120,7 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::Check => of::<CheckAnswer>(text),
         DocumentKind::CheckPairs => of::<PairsAnswer>(text),
         DocumentKind::Plan | DocumentKind::Run => of::<PlanAnswer>(text),
+        DocumentKind::PlanMesh => of::<MeshPlanAnswer>(text),
         DocumentKind::Simulate => of::<SimulateAnswer>(text),
         DocumentKind::SimulateExperiment => of::<ExperimentAnswer>(text),
         DocumentKind::Require => of::<RequireAnswer>(text),

@@ -135,9 +135,18 @@ fn a_planted_wrong_import_is_found() {
 /// Modules that the independent checker must not use: otherwise it would share the physics with the plan.
 const CLOSED_TO_THE_CHECKER: [&str; 5] = ["ballistics", "hop", "flight", "graph", "terrain"];
 
-/// Items of `ground` that the checker must not use: it may use [`Surface`](chta::ground::Surface) only.
-const CLOSED_ITEMS: [&str; 8] =
-    ["Windows", "TakeoffWindows", "FirstContact", "ChainGround", "DemGround", "PostHops", "LiftoffVelocity", "TouchdownState"];
+/// Items of `ground` that the checker must not use: it may use [`Surface`](chta::ground::Surface) and its two extensions only.
+const CLOSED_ITEMS: [&str; 9] = [
+    "Windows",
+    "TakeoffWindows",
+    "FirstContact",
+    "ChainGround",
+    "DemGround",
+    "MeshGround",
+    "PostHops",
+    "LiftoffVelocity",
+    "TouchdownState",
+];
 
 /// The forbidden names in the checker's source.
 fn forbidden_to_the_checker(source: &str) -> Vec<String> {

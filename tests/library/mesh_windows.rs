@@ -19,13 +19,13 @@ use crate::support::Draw;
 
 /// Corners and triangles under construction.
 #[derive(Clone, Default)]
-struct Shape {
+pub(crate) struct Shape {
     corners: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
 }
 
 impl Shape {
-    fn polygon(&mut self, corners: &[[f64; 3]]) {
+    pub(crate) fn polygon(&mut self, corners: &[[f64; 3]]) {
         let first = u32::try_from(self.corners.len()).unwrap();
         self.corners.extend(corners.iter().map(|corner| Point3::from(*corner)));
         let count = u32::try_from(corners.len()).unwrap();
@@ -33,7 +33,7 @@ impl Shape {
     }
 
     /// A closed box, turned about its middle, its outer sides outwards; walls thinner than nothing are turned inside out.
-    fn cuboid(&mut self, middle: Point3<f64>, half: Vector3<f64>, turn: Rotation3<f64>) {
+    pub(crate) fn cuboid(&mut self, middle: Point3<f64>, half: Vector3<f64>, turn: Rotation3<f64>) {
         let first = u32::try_from(self.corners.len()).unwrap();
         for i in 0..8 {
             let sign = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
@@ -45,7 +45,7 @@ impl Shape {
     }
 
     /// Rough ground or, turned over, a rough ceiling: a grid of heights from -size to size.
-    fn sheet(&mut self, draw: &mut Draw, cells: u32, size_m: f64, heights: [f64; 2], faces_up: bool) {
+    pub(crate) fn sheet(&mut self, draw: &mut Draw, cells: u32, size_m: f64, heights: [f64; 2], faces_up: bool) {
         let first = u32::try_from(self.corners.len()).unwrap();
         let at = |i: u32| size_m * (2.0 * f64::from(i) / f64::from(cells) - 1.0);
         for row in 0..=cells {
@@ -63,13 +63,13 @@ impl Shape {
         }
     }
 
-    fn mesh(self) -> Mesh {
+    pub(crate) fn mesh(self) -> Mesh {
         Mesh::new(self.corners, self.triangles).unwrap()
     }
 }
 
 /// A random scene: rough ground, boxes that overlap, plates, sometimes a ceiling over all.
-fn scene(draw: &mut Draw) -> Shape {
+pub(crate) fn scene(draw: &mut Draw) -> Shape {
     let mut shape = Shape::default();
     let (cells, rough_m) = (2 + u32::try_from(draw.below(9)).unwrap(), draw.log_uniform(0.01, 3.0));
     shape.sheet(draw, cells, 10.0, [-rough_m, rough_m], true);
@@ -95,11 +95,11 @@ fn scene(draw: &mut Draw) -> Shape {
     shape
 }
 
-fn surface(friction: f64) -> SurfaceProperties {
+pub(crate) fn surface(friction: f64) -> SurfaceProperties {
     SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(friction).unwrap())), rest: RestSlope::Unlimited }
 }
 
-fn ground(mesh: Mesh, limits: HopperLimits, gravity_m_s2: f64, surface: &SurfaceProperties) -> MeshGround {
+pub(crate) fn ground(mesh: Mesh, limits: HopperLimits, gravity_m_s2: f64, surface: &SurfaceProperties) -> MeshGround {
     let hopper = Hopper::new(limits).unwrap();
     MeshGround::new(MeshTree::new(mesh), &hopper, Gravity::new(gravity_m_s2).unwrap(), surface).unwrap()
 }
@@ -165,7 +165,7 @@ fn flown(ground: &MeshGround, from: &MeshContact, to: &MeshContact, arc: &Arc, g
 }
 
 /// The contact of a random point, if it has one.
-fn contact(ground: &MeshGround, draw: &mut Draw) -> Option<MeshContact> {
+pub(crate) fn contact(ground: &MeshGround, draw: &mut Draw) -> Option<MeshContact> {
     let at = Point3::new(draw.uniform(-8.0, 8.0), draw.uniform(-8.0, 8.0), draw.uniform(-2.0, 7.0));
     ground.contact(at).ok()
 }
@@ -297,7 +297,7 @@ fn limits_but_terrain(set: &MeshTakeoffSet) -> Result<([f64; 2], usize), ()> {
 }
 
 /// A DEM as the triangles that its slices cut, faces up.
-fn triangulated(dem: &Dem) -> Mesh {
+pub(crate) fn triangulated(dem: &Dem) -> Mesh {
     let mut shape = Shape::default();
     for row in 0..dem.rows() {
         for col in 0..dem.cols() {

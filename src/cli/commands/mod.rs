@@ -1,4 +1,4 @@
-//! One file per command.
+//! One file per command, and one for a plan over a mesh.
 
 pub(super) mod bodies;
 pub(super) mod check;
@@ -9,6 +9,7 @@ pub(super) mod hop;
 pub(super) mod man;
 pub(super) mod map;
 pub(super) mod plan;
+mod plan_over_mesh;
 pub(super) mod require;
 pub(super) mod run;
 pub(super) mod schema;

@@ -5,13 +5,14 @@ use chta::{
     study::{PlanOptions, plan, route_size},
 };
 
+use super::plan_over_mesh;
 use crate::cli::{
     Answer, Failure,
     args::PlanArgs,
     effects::Purpose,
     hints::further_means,
     inputs,
-    load::load_journey,
+    load::{load_journey, load_mesh_plan},
     output::{self, TableFormat},
     progress::Progress,
     threads,
@@ -24,6 +25,9 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
     let front = args.front()?;
     threads::start(args.answer.threads)?;
+    if let Some(input) = load_mesh_plan(&args.journey, &args.common, &args.search)? {
+        return plan_over_mesh::run(args, &input);
+    }
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Plan, &[])?;
     let loaded = loaded.within_memory(args.size.memory_max_bytes())?;
     loaded.ends()?;

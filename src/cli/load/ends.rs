@@ -45,8 +45,11 @@ impl EndOptions {
                     entries.forget("terrain", &format!("{name}_lonlat_deg"));
                     entries.set_by_option(&option, "terrain", &format!("{name}_m"), vec![at.x, at.y].into());
                 }
-                // Refused, or read by the command itself.
-                Some(Position::InSpace(_)) | None => {}
+                Some(Position::InSpace(at)) => {
+                    entries.forget("terrain", &format!("{name}_lonlat_deg"));
+                    entries.set_by_option(&option, "terrain", &format!("{name}_m"), at.to_vec().into());
+                }
+                None => {}
             }
             if on_map {
                 entries.forget("terrain", &format!("{name}_x_m"));

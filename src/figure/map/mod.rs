@@ -4,6 +4,7 @@ mod data;
 mod hillshade;
 mod hops;
 mod landings;
+mod mesh_plan;
 mod names;
 mod panel;
 mod plan_view;
@@ -17,8 +18,10 @@ pub use data::{
 };
 pub use hops::draw_hop_map;
 pub use landings::draw_landing_map;
+pub(super) use mesh_plan::{MeshPlan, draw_mesh_plan};
+pub(super) use panel::{goal_symbol, missed_symbol, scale_bar, start_symbol};
 pub use plan_view::PlanView;
-pub(super) use plan_view::draw_plan_view;
+pub(super) use plan_view::{draw_plan_view, nearest_symbol};
 pub use style::RasterStyle;
 pub use values::draw_value_map;
 

@@ -66,19 +66,29 @@ impl MapPanel {
         // A post's pixel extends half a spacing beyond the post.
         let (x, y) = (0.5 * map.dx_m(), 0.5 * map.dy_m());
         let bounds = MapBounds { min: MapPoint::new(first.x - x, last.y - y), max: MapPoint::new(last.x + x, first.y + y) };
-        let (wide_m, high_m) = (bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y);
-        let left = LEFT_MM.max(1.0 + left_room_mm(&Ticks::round(bounds.min.y, bounds.max.y, tall_mm / TICK_MM)));
-        let mm_per_m = ((RIGHT_MM - left) / wide_m).min(tall_mm / high_m);
-        let left = left + 0.5 * (RIGHT_MM - left - wide_m * mm_per_m);
-        let top = top_mm + STRIP_MM;
-        let panel = Panel { left, top, right: left + wide_m * mm_per_m, bottom: top + high_m * mm_per_m };
         let middle = MapPoint::new(0.5 * (bounds.min.x + bounds.max.x), 0.5 * (bounds.min.y + bounds.max.y));
         let true_north_deg = map
             .projection()
             .ok()
             .and_then(|projection| projection.north_on_map_deg(middle))
             .filter(|north_deg| (LEAST_TURN_DEG..360.0 - LEAST_TURN_DEG).contains(north_deg));
-        Self { panel, bounds, mm_per_m, true_north_deg }
+        Self { true_north_deg, ..Self::over(bounds, top_mm, tall_mm) }
+    }
+
+    /// Lays out a rectangle of a map whose true north is not known.
+    pub(super) fn over(bounds: MapBounds, top_mm: f64, tall_mm: f64) -> Self {
+        let (wide_m, high_m) = (bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y);
+        let left = LEFT_MM.max(1.0 + left_room_mm(&Ticks::round(bounds.min.y, bounds.max.y, tall_mm / TICK_MM)));
+        let mm_per_m = ((RIGHT_MM - left) / wide_m).min(tall_mm / high_m);
+        let left = left + 0.5 * (RIGHT_MM - left - wide_m * mm_per_m);
+        let top = top_mm + STRIP_MM;
+        let panel = Panel { left, top, right: left + wide_m * mm_per_m, bottom: top + high_m * mm_per_m };
+        Self { panel, bounds, mm_per_m, true_north_deg: None }
+    }
+
+    /// The scale, and the upper left corner on the sheet.
+    pub(super) const fn layout(&self) -> (f64, Place) {
+        (self.mm_per_m, (self.panel.left, self.panel.top))
     }
 
     /// Where a point of the map is drawn.
@@ -115,17 +125,8 @@ impl MapPanel {
 
     /// A scale bar of a round length above the map's left end; returns where its label ends, mm.
     fn scale_bar(&self, sheet: &mut Sheet) -> f64 {
-        // Round numbers are at most a factor of 2.5 apart, so one of them fits.
-        let lengths = Ticks::round(0.0, (0.3 * self.panel.width()).max(SHORT_MM) / self.mm_per_m, 2.5);
-        let Some(&length_m) = lengths.values.last().filter(|&&length_m| length_m > 0.0) else { return self.panel.left };
-        let (left, y) = (self.panel.left, self.panel.top - 2.6);
-        let (middle, right) = (left + 0.5 * length_m * self.mm_per_m, left + length_m * self.mm_per_m);
-        sheet.area(rectangle((left, y - 0.6), (middle, y + 0.6)), BLACK, 1.0);
-        sheet.line(rectangle((left, y - 0.6), (right, y + 0.6)).into_iter().chain([(left, y - 0.6)]).collect(), CORE_PEN);
-        let label = Label::new(format!("{} m", lengths.text(length_m)), (right + 1.5, y), SMALL_MM);
-        let (.., end_mm, _) = label.bounds_mm();
-        sheet.label(label);
-        end_mm
+        let most_mm = (0.3 * self.panel.width()).max(SHORT_MM);
+        scale_bar(sheet, (self.panel.left, self.panel.top - 2.6), self.mm_per_m, most_mm)
     }
 
     /// An arrow to grid north above the map's right end, left of it one to true north if that differs; on a narrow map right of the
@@ -237,21 +238,35 @@ impl MapPanel {
     }
 }
 
+/// A scale bar of a round length from a position on; returns where its label ends, mm.
+pub(in super::super) fn scale_bar(sheet: &mut Sheet, (left, y): Place, mm_per_m: f64, most_mm: f64) -> f64 {
+    // Round numbers are at most a factor of 2.5 apart, so one of them fits.
+    let lengths = Ticks::round(0.0, most_mm / mm_per_m, 2.5);
+    let Some(&length_m) = lengths.values.last().filter(|&&length_m| length_m > 0.0) else { return left };
+    let (middle, right) = (left + 0.5 * length_m * mm_per_m, left + length_m * mm_per_m);
+    sheet.area(rectangle((left, y - 0.6), (middle, y + 0.6)), BLACK, 1.0);
+    sheet.line(rectangle((left, y - 0.6), (right, y + 0.6)).into_iter().chain([(left, y - 0.6)]).collect(), CORE_PEN);
+    let label = Label::new(format!("{} m", lengths.text(length_m)), (right + 1.5, y), SMALL_MM);
+    let (.., end_mm, _) = label.bounds_mm();
+    sheet.label(label);
+    end_mm
+}
+
 /// The symbol of a start: a black disc in a white ring.
-pub(super) fn start_symbol(sheet: &mut Sheet, at: Place) {
+pub(in super::super) fn start_symbol(sheet: &mut Sheet, at: Place) {
     sheet.dot(at, 1.5, WHITE);
     sheet.dot(at, 1.1, BLACK);
 }
 
 /// The symbol of a reached goal: a black diamond in a white one.
-pub(super) fn goal_symbol(sheet: &mut Sheet, at: Place) {
+pub(in super::super) fn goal_symbol(sheet: &mut Sheet, at: Place) {
     diamond(sheet, at, 2.0, WHITE);
     diamond(sheet, at, 1.5, BLACK);
     diamond(sheet, at, 0.7, WHITE);
 }
 
 /// The symbol of an unreached goal: the same, crossed out.
-pub(super) fn missed_symbol(sheet: &mut Sheet, at: Place) {
+pub(in super::super) fn missed_symbol(sheet: &mut Sheet, at: Place) {
     goal_symbol(sheet, at);
     super::super::symbols::cross(sheet, at);
 }

@@ -84,7 +84,7 @@ fn numbers(sheet: &mut Sheet, map: &MapPanel, view: &PlanView<'_>, taken: &mut T
 }
 
 /// A triangle that points up: the reached place nearest to the goal.
-fn nearest_symbol(sheet: &mut Sheet, at: Place) {
+pub(in super::super) fn nearest_symbol(sheet: &mut Sheet, at: Place) {
     triangle(sheet, at, 1.0, ORANGE);
 }
 

@@ -19,7 +19,9 @@ pub struct MeshContactFacet {
 pub struct MeshContact {
     point_m: Point3<f64>,
     moved_m: f64,
-    /// All facets that meet at the point.
+    /// How far the point stands off the surface.
+    stand_off_m: f64,
+    /// All facets that meet at the point of the surface.
     facets: Vec<MeshContactFacet>,
 }
 
@@ -74,6 +76,11 @@ impl MeshContact {
         self.moved_m
     }
 
+    /// How far the point stands off the surface, m.
+    pub const fn stand_off_m(&self) -> f64 {
+        self.stand_off_m
+    }
+
     /// The facets that meet at the point.
     pub fn facets(&self) -> &[MeshContactFacet] {
         &self.facets
@@ -119,6 +126,40 @@ impl MeshGround {
         {
             return Err(NoMeshContact::Covered { point_m: at, nearest_m: nearest.point });
         }
-        Ok(MeshContact { point_m: nearest.point, moved_m: nearest.distance_m, facets })
+        Ok(MeshContact { point_m: nearest.point, moved_m: nearest.distance_m, stand_off_m: 0.0, facets })
+    }
+
+    /// A contact as [`contact`](Self::contact) and [`stood_off`](Self::stood_off) gave it, by its point, how far it was moved to the surface
+    /// and stands off it, and its facets; `None` where it does not lie on these.
+    pub fn known_contact(
+        &self,
+        point_m: Point3<f64>,
+        (moved_m, stand_off_m): (f64, f64),
+        facets: &[FacetId],
+    ) -> Option<MeshContact> {
+        let tree = self.tree();
+        let count = tree.mesh().triangle_count();
+        if facets.is_empty() || facets.iter().any(|facet| facet.index() >= count) || !(moved_m >= 0.0 && stand_off_m >= 0.0) {
+            return None;
+        }
+        let near_m = 2.0 * tree.resolution_m() + stand_off_m;
+        let lies_on = |id: &FacetId| (point_m - tree.corners(*id)[0]).dot(&tree.normal(*id)).abs() <= near_m;
+        let lies = facets.iter().all(lies_on) && tree.nearest(point_m).distance_m <= near_m;
+        let of_facet = |id: &FacetId| MeshContactFacet { id: *id, normal: tree.normal(*id).into_inner() };
+        lies.then(|| MeshContact { point_m, moved_m, stand_off_m, facets: facets.iter().map(of_facet).collect() })
+    }
+
+    /// A contact moved off its surface along the mean normal of its facets, whose limits it keeps; `None` where it would then lie inside
+    /// a body, or nearer to the mesh than that.
+    pub fn stood_off(&self, contact: &MeshContact, stand_off_m: f64) -> Option<MeshContact> {
+        if stand_off_m == 0.0 {
+            return Some(contact.clone());
+        }
+        let mean: Vector3<f64> = contact.facets.iter().map(|facet| facet.normal).sum();
+        let point_m = contact.point_m + mean.try_normalize(1.0e-6)? * stand_off_m;
+        let tree = self.tree();
+        let clear_m = stand_off_m * (1.0 - 1.0e-6) - tree.resolution_m();
+        let stands = tree.nearest(point_m).distance_m >= clear_m && !tree.is_buried(point_m);
+        stands.then(|| MeshContact { point_m, stand_off_m, ..contact.clone() })
     }
 }

@@ -16,10 +16,14 @@
 
 mod blocked;
 mod contact;
+mod flight;
+mod room;
+mod surface;
 mod takeoff_set;
 
 pub use blocked::BlockedSpan;
 pub use contact::{MeshContact, MeshContactFacet, NoMeshContact};
+pub use surface::MeshPosition;
 pub use takeoff_set::{MeshConflict, MeshTakeoffSet, MeshWindow, MeshWindowEnd};
 
 use std::{ops::ControlFlow, sync::Arc};
@@ -41,6 +45,10 @@ pub struct MeshGround {
     tree: Arc<MeshTree>,
     envelope: FlightEnvelope,
     surface: SurfaceProperties,
+    /// Added to every coefficient of friction in the flights of a trial.
+    friction_error: f64,
+    /// How far contacts stand off the surface, m.
+    stand_off_m: f64,
 }
 
 /// The course of a hop between two contacts of a mesh.
@@ -73,7 +81,13 @@ impl MeshGround {
         surface.check()?;
         let level = nalgebra::Vector3::z();
         facet_constraints(level, Vector2::x(), FacetGround::default(), hopper, gravity, surface)?;
-        Ok(Self { tree: tree.into(), envelope: FlightEnvelope::new(hopper, gravity), surface: *surface })
+        Ok(Self {
+            tree: tree.into(),
+            envelope: FlightEnvelope::new(hopper, gravity),
+            surface: *surface,
+            friction_error: 0.0,
+            stand_off_m: 0.0,
+        })
     }
 
     /// The mesh.
@@ -86,6 +100,11 @@ impl MeshGround {
         &self.envelope
     }
 
+    /// The surface.
+    pub const fn surface(&self) -> &SurfaceProperties {
+        &self.surface
+    }
+
     /// The course from one contact to another; `None` where one is right over the other: a vertical hop has no plane.
     pub fn course(&self, takeoff: &MeshContact, landing: &MeshContact) -> Option<MeshCourse> {
         let away = landing.point_m() - takeoff.point_m();
@@ -95,7 +114,8 @@ impl MeshGround {
         }
         let heading = away.xy() / run_m;
         // The slope of a facet has more digits than the difference of two heights on it.
-        let shared = takeoff.facets().iter().find(|facet| facet.normal.z > 0.0 && landing.touches(facet.id));
+        let on_surface = takeoff.stand_off_m() == 0.0 && landing.stand_off_m() == 0.0;
+        let shared = takeoff.facets().iter().find(|facet| on_surface && facet.normal.z > 0.0 && landing.touches(facet.id));
         let sight = match shared {
             Some(facet) => LineOfSight::along(run_m, (-facet.normal.xy() / facet.normal.z).dot(&heading)),
             None => LineOfSight::new(run_m, away.z),

@@ -172,21 +172,17 @@ impl MeshTakeoffSet {
         lofts.shifted(self.course.sight.slope()).angles()
     }
 
-    /// The window and the arc to fly by a choice; `None` if the hop is infeasible.
-    ///
-    /// ```text
-    ///     least speed: the arc of least speed over all windows;   least time: the flattest;   mid range: in the widest window, by angle
-    /// ```
+    /// The window and the arc to fly by a choice, as [`TakeoffChoice::among`] has it; `None` if the hop is infeasible.
     pub fn arc(&self, choice: TakeoffChoice, gravity_m_s2: f64) -> Option<(MeshWindow, Arc)> {
         let sight = self.course.sight;
-        let arcs = self.windows.iter().map(|window| (*window, Arc::new(sight, choice.loft(sight, window.lofts), gravity_m_s2)));
-        let width =
-            |window: &MeshWindow| self.angles_of(window.lofts).map_or(0.0, |angles| angles.max.radians() - angles.min.radians());
-        match choice {
-            TakeoffChoice::LeastTime => { arcs }.next(),
-            TakeoffChoice::LeastSpeed => arcs.min_by(|(_, a), (_, b)| a.takeoff_speed_m_s().total_cmp(&b.takeoff_speed_m_s())),
-            TakeoffChoice::MidRange | TakeoffChoice::MostReliable => arcs.min_by(|(a, _), (b, _)| width(b).total_cmp(&width(a))),
-        }
+        let (at, loft) = choice.among(sight, self.windows.iter().map(|window| window.lofts))?;
+        Some((self.windows[at], Arc::new(sight, loft, gravity_m_s2)))
+    }
+
+    /// The window with a loft, or else the one nearest to it; `None` if the hop is infeasible.
+    pub fn window_of(&self, loft: f64) -> Option<MeshWindow> {
+        let outside = |window: &MeshWindow| (window.lofts.lower - loft).max(loft - window.lofts.upper).max(0.0);
+        self.windows.iter().min_by(|a, b| outside(a).total_cmp(&outside(b))).copied()
     }
 }
 

@@ -1,20 +1,20 @@
 //! The check of every limit of one flown hop.
 
-use std::{f64::consts::FRAC_PI_2, ops::ControlFlow};
+use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::{Vector2, Vector3};
 
 use super::{
     Flight, Measure, StatedValue, ViolatedLimit, Violation,
     flight::TooLow,
-    footprint::{Fitted, Footing, RAY_TOLERANCE, fitted},
+    footprint::{Fitted, Footing, FootprintFit, RAY_TOLERANCE},
 };
 use crate::{
     chain::{ContactRule, GroundRefusal},
-    ground::{ContactPoint, Facet, Frame, Hold, Side, Surface},
+    ground::{ContactPoint, ElementVertex, Facet, Frame, Hold, Side, Surface},
     path::Hop,
     quantity::{Angle, AngleInterval, MapPoint},
-    world::{Contact, Direction, FrictionCone, Limit, SPEED_TOLERANCE, tolerant_speed_m_s},
+    world::{Contact, FrictionCone, Limit, SPEED_TOLERANCE, tolerant_speed_m_s},
 };
 
 /// Tolerance of an angle over its limit, rad: it corresponds to the tolerance of speeds. A tangent and an arc tangent between limit
@@ -52,11 +52,14 @@ pub(super) struct Checker<'a, S: Surface> {
     /// The surface's own contacts at take-off and landing.
     pub(super) contacts: [Option<S::Contact>; 2],
     pub(super) hop: &'a Hop,
-    pub(super) direction: Direction,
     /// The horizontal direction of flight; `None` if the ends are not two positions of the ground.
     pub(super) heading: Option<Vector2<f64>>,
     /// Horizontal distance from take-off to landing, m.
     pub(super) run_m: Option<f64>,
+    /// The bends of the ground strictly below the flight.
+    pub(super) bends: Vec<ElementVertex>,
+    /// Fits the ground under a footprint.
+    pub(super) fitted: FootprintFit<S>,
     pub(super) violations: &'a mut Vec<Violation>,
 }
 
@@ -72,7 +75,7 @@ struct Meeting {
 
 impl<S: Surface> Checker<'_, S> {
     fn note(&mut self, limit: ViolatedLimit, measure: Option<Measure>, at_x_m: f64) {
-        self.violations.push(Violation { hop: self.number, limit, measure, at_x_m, vertex: None });
+        self.violations.push(Violation { measure, ..Violation::at(self.number, limit, at_x_m) });
     }
 
     pub(super) fn note_limit(&mut self, limit: Limit, found: f64, allowed: f64, unit: &'static str, at_x_m: f64) {
@@ -117,21 +120,11 @@ impl<S: Surface> Checker<'_, S> {
 
     /// A flight stays in one vertical plane, so every bend strictly below it is a violation.
     fn bends(&mut self) {
-        let ([Some(from), _], Some(heading), Some(run_m)) = (self.contacts, self.heading, self.run_m) else { return };
-        let (number, violations) = (self.number, &mut *self.violations);
-        let limit = ViolatedLimit::Limit(Limit::Bend);
-        let before = violations.len();
-        self.surface.walk(&from, heading, &mut |element| {
-            if element.to_m >= run_m {
-                return ControlFlow::Break(());
-            }
-            if let Some(vertex) = element.vertex.filter(|_| element.bends) {
-                violations.push(Violation { hop: number, limit, measure: None, at_x_m: vertex.x_m, vertex: Some(vertex.id) });
-            }
-            ControlFlow::Continue(())
-        });
-        // In the order of the chain, for both directions of travel.
-        violations[before..].sort_by(|a, b| a.at_x_m.total_cmp(&b.at_x_m));
+        for vertex in &self.bends {
+            let limit = ViolatedLimit::Limit(Limit::Bend);
+            let at = Violation { vertex: Some(vertex.id), ..Violation::at(self.number, limit, vertex.x_m) };
+            self.violations.push(at);
+        }
     }
 
     /// Checks of the take-off: the flown direction and speed are the commanded ones.
@@ -203,25 +196,28 @@ impl<S: Surface> Checker<'_, S> {
         };
         let facets = match (self.own(contact), self.heading) {
             (Some(own), Some(heading)) => self.surface.facets(&own, heading, side),
-            _ => [None, None],
+            _ => Vec::new(),
         };
-        facets.into_iter().flatten()
+        facets.into_iter()
     }
 
-    /// The ground's refusals, cone and speed limit; beside an edge, those of both facets.
+    /// The ground's refusals, cone and speed limit; on an edge or a corner, those of all facets that meet there.
     fn ground(&mut self, stated: &ContactPoint, meeting: Meeting) {
         let x_m = stated.along_m;
         let mut known = false;
         let footing = self.footing(meeting.contact);
+        let first = self.violations.len();
         for facet in self.ruling(meeting.contact) {
             let before = self.violations.len();
             self.footprint(footing, facet.rest_slope, x_m);
             self.facet(&facet, meeting, x_m);
             known = true;
-            // A violation on one facet is not reported again for its neighbour.
-            if self.violations.len() > before {
-                return;
-            }
+            // What violates one facet is not reported again for its neighbour.
+            let repeated = |at: usize| (first..before).any(|known| self.violations[known].limit == self.violations[at].limit);
+            let kept: Vec<Violation> =
+                (before..self.violations.len()).filter(|at| !repeated(*at)).map(|at| self.violations[at]).collect();
+            self.violations.truncate(before);
+            self.violations.extend(kept);
         }
         if !known {
             self.note(ViolatedLimit::Limit(Limit::Direction), None, x_m);
@@ -232,7 +228,7 @@ impl<S: Surface> Checker<'_, S> {
     fn footing(&self, contact: Contact) -> Footing {
         let footprint_m = self.surface.hopper().limits().footprint_m.filter(|footprint_m| *footprint_m > 0.0);
         let (Some(footprint_m), Some(own)) = (footprint_m, self.own(contact)) else { return Footing::NotAsked };
-        fitted(self.surface, &own, footprint_m).map_or(Footing::Unknown, Footing::Fitted)
+        (self.fitted)(self.surface, &own, footprint_m).map_or(Footing::Unknown, Footing::Fitted)
     }
 
     /// The plane fitted over the footprint, against the rest slope of the facet under the contact and the roughness.
@@ -421,7 +417,8 @@ impl<S: Surface> Checker<'_, S> {
         }
         for TooLow { over, required_m } in &flight.too_low {
             let measure = Some(Measure { found: over.height_m, allowed: *required_m, unit: "m" });
-            self.violations.push(Violation { hop: self.number, limit, measure, at_x_m: over.x_m, vertex: over.vertex });
+            let at = Violation::at(self.number, limit, over.x_m);
+            self.violations.push(Violation { measure, vertex: over.vertex, facet: over.facet, ..at });
         }
         if flight.too_low.is_empty()
             && let Some((x_m, depth_m)) = flight.underground
@@ -440,23 +437,11 @@ impl<S: Surface> Checker<'_, S> {
             (libm::hypot(contact.x_m - planned.x_m, contact.z_m - planned.z_m), contact.x_m)
         } else {
             // It leaves the known ground, so it misses by at least the distance to its end.
-            let end_x_m = self.end_of_ground_m();
+            let end_x_m = flight.left_at_x_m.unwrap_or(planned.x_m);
             ((end_x_m - planned.x_m).abs(), end_x_m)
         };
         let measure = Measure { found, allowed: flight.place_tolerance_m, unit: "m" };
         self.note(ViolatedLimit::LandingPoint, Some(measure), at_x_m);
-    }
-
-    /// Where the known ground ends in the direction of flight, m along the profile.
-    fn end_of_ground_m(&self) -> f64 {
-        let begin_m = self.hop.takeoff.along_m;
-        let ([Some(from), _], Some(heading)) = (self.contacts, self.heading) else { return begin_m };
-        let mut end_m = begin_m;
-        self.surface.walk(&from, heading, &mut |element| {
-            end_m = element.vertex.map_or_else(|| begin_m + self.direction.sign() * element.to_m, |vertex| vertex.x_m);
-            ControlFlow::Continue(())
-        });
-        end_m
     }
 
     /// The greatest height and the longest flight.

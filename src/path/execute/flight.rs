@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 use nalgebra::Vector2;
 
 use crate::{
-    ground::{ElementVertex, Surface},
+    ground::{ElementVertex, Profiles, Surface},
     path::Hop,
-    quantity::{Angle, ChainPoint, VertexId},
+    quantity::{Angle, ChainPoint, FacetId, VertexId},
     world::ClearanceRule,
 };
 
@@ -17,7 +17,7 @@ use crate::{
 /// stretch the arc is concave and the ground straight, so an arc above the ground at both ends of a stretch is above it in between;
 /// four samples per stretch, and 64 on a stretch that is the whole flight, check that independently. More steps cost time and
 /// rounding.
-const STEPS_PER_FLIGHT: f64 = 64.0;
+pub(super) const STEPS_PER_FLIGHT: f64 = 64.0;
 const STEPS_PER_STRETCH: f64 = 4.0;
 
 /// Tolerance of a flown position, as a fraction of the flight's size (the sum of its run and its height).
@@ -25,16 +25,18 @@ const STEPS_PER_STRETCH: f64 = 4.0;
 /// Positions are measured from the take-off, so where on the map the hop lies costs no digits. What remains is the last digit of
 /// the commanded angle and speed (some 1e-15 of the size) and one rounding per step (1e-16 each, in a random walk: 1e-13 for a
 /// million steps). The tolerance is ten times that, and a ten-billionth of 1 % of a hop.
-const PLACE_TOLERANCE: f64 = 1e-12;
+pub(super) const PLACE_TOLERANCE: f64 = 1e-12;
 
-/// The least height over a vertex flown past.
+/// The least height over a vertex flown past, or of a mesh over or under an edge of a facet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
     /// The vertex of the chain; `None` over a ground without numbered vertices.
     pub vertex: Option<VertexId>,
+    /// The facet of the mesh; `None` over other ground.
+    pub facet: Option<FacetId>,
     /// Its position along the profile, m.
     pub x_m: f64,
-    /// Height of the flight above it, m; negative below.
+    /// Height of the flight above it, m, or below a facet that it passes under; negative where it passes on the wrong side.
     pub height_m: f64,
 }
 
@@ -75,6 +77,8 @@ pub struct Flight {
     pub(super) underground: Option<(f64, f64)>,
     /// Where the known ground ends before the landing, m from the take-off.
     pub(super) unknown_from_m: Option<f64>,
+    /// Where the known ground ends in the direction of flight, m along the profile; `None` unless the flight leaves it.
+    pub(super) left_at_x_m: Option<f64>,
     /// Uncertainty of a position of this flight from rounding of the flight, m: [`PLACE_TOLERANCE`] of its size.
     pub(super) rounding_m: f64,
     /// The same including the rounding of the ground's heights, m.
@@ -179,6 +183,27 @@ pub(super) struct Course<'a, S: Surface> {
 }
 
 impl<S: Surface> Course<'_, S> {
+    /// The point of the profile at a distance and height from the take-off.
+    pub(super) fn point(&self, distance_m: f64, height_m: f64) -> ChainPoint {
+        let (takeoff, landing) = (&self.hop.takeoff, &self.hop.landing);
+        let sign = if landing.along_m < takeoff.along_m { -1.0 } else { 1.0 };
+        ChainPoint::new(takeoff.along_m + sign * distance_m, takeoff.point_m.z + height_m)
+    }
+
+    /// The height to keep over the ground at a distance from the take-off, m: the clearance, tapered towards both contacts.
+    pub(super) fn required_m(&self, distance_m: f64) -> f64 {
+        let limits = self.surface.hopper().limits();
+        match limits.clearance_rule {
+            ClearanceRule::Vertex => limits.clearance_m,
+            ClearanceRule::Tapered(taper) => {
+                let nearer_m = distance_m.min(self.run_m - distance_m);
+                limits.clearance_m.min(taper * nearer_m.max(0.0))
+            }
+        }
+    }
+}
+
+impl<S: Profiles> Course<'_, S> {
     /// Height of a point above the take-off, m. Close doubles subtract without error.
     fn over_takeoff_m(&self, z_m: f64) -> f64 {
         z_m - self.hop.takeoff.point_m.z
@@ -221,11 +246,29 @@ impl<S: Surface> Course<'_, S> {
         stretches
     }
 
-    /// The point of the profile at a distance and height from the take-off.
-    fn point(&self, distance_m: f64, height_m: f64) -> ChainPoint {
-        let (takeoff, landing) = (&self.hop.takeoff, &self.hop.landing);
-        let sign = if landing.along_m < takeoff.along_m { -1.0 } else { 1.0 };
-        ChainPoint::new(takeoff.along_m + sign * distance_m, takeoff.point_m.z + height_m)
+    /// Every bend of the plane of the profile strictly below a flight, in the order of the profile.
+    pub(super) fn bends(&self) -> Vec<ElementVertex> {
+        let mut bends = Vec::new();
+        self.surface.walk(&self.from, self.heading, &mut |element| {
+            if element.to_m >= self.run_m {
+                return ControlFlow::Break(());
+            }
+            bends.extend(element.vertex.filter(|_| element.bends));
+            ControlFlow::Continue(())
+        });
+        // For both directions of travel.
+        bends.sort_by(|a, b| a.x_m.total_cmp(&b.x_m));
+        bends
+    }
+
+    /// Where the known ground ends in the direction of flight, m along the profile.
+    fn end_of_ground_m(&self) -> f64 {
+        let mut end_m = self.hop.takeoff.along_m;
+        self.surface.walk(&self.from, self.heading, &mut |element| {
+            end_m = element.vertex.map_or_else(|| self.point(element.to_m, 0.0).x_m, |vertex| vertex.x_m);
+            ControlFlow::Continue(())
+        });
+        end_m
     }
 
     /// Flies the hop as commanded; `None` if it does not leave the ground forwards.
@@ -263,6 +306,7 @@ impl<S: Surface> Course<'_, S> {
             too_low: Vec::new(),
             underground: None,
             unknown_from_m,
+            left_at_x_m: None,
             rounding_m,
             place_tolerance_m,
             hits: false,
@@ -280,6 +324,7 @@ impl<S: Surface> Course<'_, S> {
             None if over_m > place_tolerance_m => self.beyond(landing),
             None => Some(self.hop.landing.in_profile()),
         };
+        flight.left_at_x_m = flight.contact.is_none().then(|| self.end_of_ground_m());
         Some(flight)
     }
 
@@ -318,7 +363,7 @@ impl<S: Surface> Course<'_, S> {
             let (StretchEnd::Edge(vertex), Some(over)) = (stretch.end, steps.last()) else { continue };
             let height_m = over.height_m - stretch.to.1;
             let x_m = vertex.map_or_else(|| self.point(stretch.to.0, 0.0).x_m, |vertex| vertex.x_m);
-            let clearance = Clearance { vertex: vertex.map(|vertex| vertex.id), x_m, height_m };
+            let clearance = Clearance { vertex: vertex.map(|vertex| vertex.id), facet: None, x_m, height_m };
             if flight.least_clearance.is_none_or(|least| height_m < least.height_m) {
                 flight.least_clearance = Some(clearance);
             }
@@ -326,18 +371,6 @@ impl<S: Surface> Course<'_, S> {
             // On a steep arc, an error of the horizontal position is a larger error of the height.
             if height_m < required_m - flight.place_tolerance_m * over.stretch() {
                 flight.too_low.push(TooLow { over: clearance, required_m });
-            }
-        }
-    }
-
-    /// The height to keep over the ground at a distance from the take-off, m: the clearance, tapered towards both contacts.
-    fn required_m(&self, distance_m: f64) -> f64 {
-        let limits = self.surface.hopper().limits();
-        match limits.clearance_rule {
-            ClearanceRule::Vertex => limits.clearance_m,
-            ClearanceRule::Tapered(taper) => {
-                let nearer_m = distance_m.min(self.run_m - distance_m);
-                limits.clearance_m.min(taper * nearer_m.max(0.0))
             }
         }
     }
@@ -377,7 +410,7 @@ impl<S: Surface> Course<'_, S> {
         let height_m = state.height_m - stretch.height_m(stretch.share(state.distance_m));
         let required_m = self.required_m(state.distance_m);
         let tolerance_m = flight.place_tolerance_m * state.stretch().max(stretch.ground_stretch());
-        let over = Clearance { vertex: None, x_m: self.point(state.distance_m, 0.0).x_m, height_m };
+        let over = Clearance { vertex: None, facet: None, x_m: self.point(state.distance_m, 0.0).x_m, height_m };
         (height_m < required_m - tolerance_m).then_some(TooLow { over, required_m })
     }
 

@@ -4,7 +4,7 @@ use std::{f64::consts::TAU, ops::ControlFlow};
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-use crate::ground::{Around, Element, Surface};
+use crate::ground::{Around, Element, Profiles, Surface};
 
 /// Rays around a contact on a map, one in the middle of each equal angle. More rays come closer to the integral over all directions;
 /// with these the slope is within [`RAY_TOLERANCE`] of it.
@@ -40,6 +40,9 @@ pub(super) struct Fitted {
     pub(super) residual_m: f64,
 }
 
+/// Fits the ground around a contact; `None` where it is not known as far as the footprint reaches.
+pub(super) type FootprintFit<S> = fn(&S, &<S as Surface>::Contact, f64) -> Option<Fitted>;
+
 /// Sums over one ray: of 1, x, and x^2, each with the weight of its ring, and of z and x z.
 #[derive(Clone, Copy, Default)]
 struct Sums {
@@ -48,7 +51,7 @@ struct Sums {
 }
 
 /// Fits the ground around a contact; `None` where it is not known as far as the footprint reaches.
-pub(super) fn fitted<S: Surface>(surface: &S, at: &S::Contact, footprint_m: f64) -> Option<Fitted> {
+pub(super) fn fitted<S: Profiles>(surface: &S, at: &S::Contact, footprint_m: f64) -> Option<Fitted> {
     let half_m = 0.5 * footprint_m;
     let around = surface.around(at, half_m);
     let headings: Vec<Vector2<f64>> = match around {

@@ -8,6 +8,7 @@
 mod checker;
 mod flight;
 mod footprint;
+mod over_mesh;
 mod stores;
 mod touchdown;
 mod violation;
@@ -15,12 +16,13 @@ mod violation;
 use checker::Checker;
 use flight::Course;
 pub use flight::{Clearance, Flight};
+use footprint::FootprintFit;
 use stores::Stores;
 pub use violation::{Measure, StatedValue, ViolatedLimit, Violation};
 
 use super::{Hop, HopPath};
 use crate::{
-    ground::{ContactPoint, Surface},
+    ground::{ContactPoint, ElementVertex, Profiles, Surface, Triangulated},
     world::Direction,
 };
 
@@ -81,7 +83,33 @@ impl Execution {
 /// let execution = execute(chain, &path, None);
 /// assert!((execution.flights[0].as_ref().unwrap().contact.unwrap().x_m - 19.602).abs() < 1e-9);
 /// ```
-pub fn execute<S: Surface>(surface: &S, path: &HopPath, ends: Option<(S::Contact, S::Contact)>) -> Execution {
+pub fn execute<S: Profiles>(surface: &S, path: &HopPath, ends: Option<(S::Contact, S::Contact)>) -> Execution {
+    executed(surface, &Way { fly: |course| course.fly(), bends: |course| course.bends(), fitted: footprint::fitted }, path, ends)
+}
+
+/// Flies a planned path over triangles that may stand over one another by Newton's equations, and reports all its violations.
+///
+/// The checks are those of [`execute()`]. Both contacts of a hop have to lie on the surface, and obey all facets that meet there, in three
+/// dimensions. Every facet that a small step of the flight comes near is cut by the vertical plane of the flight: the flight has to pass
+/// over the cut or under it as a whole, at least the clearance away, and not through an edge that two facets share.
+///
+/// The tolerance of a distance from a facet is that of the position and the [resolution](Surface::resolution_m) of the mesh. A footprint
+/// is not fitted over a mesh: a hopper that has one violates its limit.
+pub fn execute_over_mesh<S: Triangulated>(mesh: &S, path: &HopPath, ends: Option<(S::Contact, S::Contact)>) -> Execution {
+    executed(mesh, &Way { fly: over_mesh::fly, bends: |_| Vec::new(), fitted: |_, _, _| None }, path, ends)
+}
+
+/// How flights over a kind of ground are flown again, and what else lies under them.
+struct Way<S: Surface> {
+    /// Flies a hop; `None` if it does not leave the ground forwards.
+    fly: fn(&Course<'_, S>) -> Option<Flight>,
+    /// The bends of the ground strictly below a flight.
+    bends: fn(&Course<'_, S>) -> Vec<ElementVertex>,
+    /// Fits the ground under a footprint.
+    fitted: FootprintFit<S>,
+}
+
+fn executed<S: Surface>(surface: &S, way: &Way<S>, path: &HopPath, ends: Option<(S::Contact, S::Contact)>) -> Execution {
     let mut violations = Vec::new();
     let mut flights = Vec::with_capacity(path.hops.len());
     let ends = ends.map(|(start, goal)| (surface.contact_point(&start), surface.contact_point(&goal)));
@@ -94,12 +122,12 @@ pub fn execute<S: Surface>(surface: &S, path: &HopPath, ends: Option<(S::Contact
             (None, None) => {}
         }
         before = Some(hop.landing);
-        let Some(direction) = flyable(i + 1, hop, &mut violations) else {
+        if !is_flyable(i + 1, hop, &mut violations) {
             stores.check(i + 1, hop, None, &mut violations);
             flights.push(None);
             continue;
-        };
-        let flown = checked(surface, i + 1, hop, direction, &mut violations);
+        }
+        let flown = checked((surface, way), i + 1, hop, &mut violations);
         stores.check(i + 1, hop, flown.as_ref(), &mut violations);
         flights.push(flown);
     }
@@ -112,22 +140,17 @@ pub fn execute<S: Surface>(surface: &S, path: &HopPath, ends: Option<(S::Contact
 }
 
 /// Flies one hop over the surface and checks every limit.
-fn checked<S: Surface>(
-    surface: &S,
-    number: usize,
-    hop: &Hop,
-    direction: Direction,
-    violations: &mut Vec<Violation>,
-) -> Option<Flight> {
+fn checked<S: Surface>((surface, way): (&S, &Way<S>), number: usize, hop: &Hop, violations: &mut Vec<Violation>) -> Option<Flight> {
     let contacts = [&hop.takeoff, &hop.landing].map(|stated| surface.contact_at(stated));
     let course = match contacts {
         [Some(from), Some(to)] => surface.course(&from, &to).map(|(run_m, heading)| Course { surface, hop, from, run_m, heading }),
         _ => None,
     };
     let heading = course.as_ref().map(|course| course.heading);
-    let flown = course.as_ref().and_then(Course::fly);
+    let flown = course.as_ref().and_then(way.fly);
+    let bends = course.as_ref().map(way.bends).unwrap_or_default();
     let run_m = course.map(|course| course.run_m);
-    let mut checker = Checker { number, surface, contacts, hop, direction, heading, run_m, violations };
+    let mut checker = Checker { number, surface, contacts, hop, heading, run_m, bends, fitted: way.fitted, violations };
     match &flown {
         Some(flight) => checker.flight(flight),
         None => checker.no_flight(),
@@ -149,17 +172,17 @@ fn continuous(hop: usize, (arrived, departs): (&ContactPoint, &ContactPoint), sa
     if !same {
         let found = (arrived.point_m - departs.point_m).norm();
         let measure = Some(Measure { found, allowed: 0.0, unit: "m" });
-        violations.push(Violation { hop, limit: ViolatedLimit::Continuity, measure, at_x_m: departs.along_m, vertex: None });
+        violations.push(Violation { measure, ..Violation::at(hop, ViolatedLimit::Continuity, departs.along_m) });
     }
 }
 
-/// Checks that a hop's numbers are finite and that its ends differ in distance along the path. Returns the actual direction of
-/// travel, or `None` if the hop cannot be flown. A wrong stated direction is reported but does not prevent the flight.
-fn flyable(number: usize, hop: &Hop, violations: &mut Vec<Violation>) -> Option<Direction> {
+/// Checks that a hop's numbers are finite and that its ends differ in distance along the path: otherwise it cannot be flown. A wrong stated
+/// direction is reported but does not prevent the flight.
+fn is_flyable(number: usize, hop: &Hop, violations: &mut Vec<Violation>) -> bool {
     let before = violations.len();
     let mut note = |value| {
         let limit = ViolatedLimit::StatedValue(value);
-        violations.push(Violation { hop: number, limit, measure: None, at_x_m: hop.takeoff.along_m, vertex: None });
+        violations.push(Violation::at(number, limit, hop.takeoff.along_m));
     };
     // Finite only if every coordinate is.
     let size = |point: &ContactPoint| point.along_m.abs() + point.point_m.coords.abs().sum();
@@ -178,6 +201,5 @@ fn flyable(number: usize, hop: &Hop, violations: &mut Vec<Violation>) -> Option<
     if direction != Some(hop.direction) {
         note(StatedValue::Direction);
     }
-    let flown = violations[before..].iter().all(|v| v.limit == ViolatedLimit::StatedValue(StatedValue::Direction));
-    direction.filter(|_| flown)
+    direction.is_some() && violations[before..].iter().all(|v| v.limit == ViolatedLimit::StatedValue(StatedValue::Direction))
 }

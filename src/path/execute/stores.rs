@@ -41,7 +41,7 @@ impl<'a> Stores<'a> {
             if !agrees {
                 let measure = stated.zip(flown).map(|(found, allowed)| Measure { found, allowed, unit });
                 let limit = ViolatedLimit::StatedValue(value);
-                violations.push(Violation { hop: number, limit, measure, at_x_m: hop.takeoff.along_m, vertex: None });
+                violations.push(Violation { measure, ..Violation::at(number, limit, hop.takeoff.along_m) });
             }
         };
         // An error of the position along the flight is one of the time, in which gravity changes the velocity.

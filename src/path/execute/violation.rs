@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use crate::{quantity::VertexId, world::Limit};
+use crate::{
+    quantity::{FacetId, VertexId},
+    world::Limit,
+};
 
 /// A number stated in a [`Hop`](crate::path::Hop) that the checker computes by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -116,6 +119,15 @@ pub struct Violation {
     pub at_x_m: f64,
     /// The vertex passed too low, for the terrain.
     pub vertex: Option<VertexId>,
+    /// The facet of a mesh that is passed through or too near, for the terrain.
+    pub facet: Option<FacetId>,
+}
+
+impl Violation {
+    /// A violation without numbers.
+    pub(super) const fn at(hop: usize, limit: ViolatedLimit, at_x_m: f64) -> Self {
+        Self { hop, limit, measure: None, at_x_m, vertex: None, facet: None }
+    }
 }
 
 impl fmt::Display for Violation {
@@ -124,6 +136,9 @@ impl fmt::Display for Violation {
         write!(f, "hop {hop}: {limit} is violated at x = {at_x_m} m")?;
         if let Some(vertex) = self.vertex {
             write!(f, " over vertex {}", vertex.index() + 1)?;
+        }
+        if let Some(facet) = self.facet {
+            write!(f, " at facet {}", facet.index() + 1)?;
         }
         let Some(Measure { found, allowed, unit }) = self.measure else { return Ok(()) };
         match limit {

@@ -215,6 +215,11 @@ impl MeshTree {
         });
     }
 
+    /// Visits all triangles of the parts of the mesh that a condition on their boxes admits, given by their lower and upper corners.
+    pub fn visit(&self, mut enters: impl FnMut(Point3<f64>, Point3<f64>) -> bool, visit: impl FnMut(FacetId, &[Point3<f64>; 3])) {
+        self.all_in(|bounds| enters(bounds.min, bounds.max), visit);
+    }
+
     /// The point of the mesh that is nearest to a given one; of several equally near ones, that of the triangle that comes first in the
     /// mesh.
     pub fn nearest(&self, to: Point3<f64>) -> NearestOnMesh {

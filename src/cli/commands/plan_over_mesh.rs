@@ -1,0 +1,45 @@
+//! `chta plan` over a mesh.
+
+use chta::{
+    report::{MapKnowledge, mesh_plan_text, write_path_csv},
+    study::{MeshRouteQuestion, mesh_route},
+};
+
+use crate::cli::{
+    Answer, Failure,
+    args::PlanArgs,
+    load::MeshPlanInput,
+    output::{self, TableFormat},
+    progress::Progress,
+    views::{Files, Table, Views},
+};
+
+/// Plans a free route over a mesh.
+pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
+    let refused = [
+        ("--plot", args.plot.is_some(), "draws a path along its profile"),
+        ("--geojson", args.geojson.is_some(), "writes a path on a map"),
+        ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
+        ("--front", args.front.is_some(), "searches the nodes of a DEM or a profile"),
+        ("--prove", args.prove.prove, "bounds the hops along a profile"),
+        ("--verify", args.verify, "flies a path again over a DEM or a profile"),
+    ];
+    if let Some((option, _, what)) = refused.into_iter().find(|(_, given, _)| *given) {
+        let message = format!("{option}: found this option, which {what}, and this terrain is a mesh: leave the option out");
+        return Err(Failure::message(message));
+    }
+    let mut table = Table::begin(args.output.as_deref(), TableFormat::Csv)?;
+    let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base };
+    let routed = mesh_route(&question, &Progress::new(args.common.quiet)).map_err(|error| Failure::about(&input.mesh, &error))?;
+    output::warn_all(args.common.quiet, &routed.warnings);
+    let views = Views {
+        text: &|| mesh_plan_text(&routed.answer),
+        json: &|| input.document(&routed.warnings, &routed.answer),
+        csv: &|out| write_path_csv(&routed.answer.path, MapKnowledge::Metres, out),
+    };
+    let mut files = Files::default();
+    files.table(&mut table, &views)?;
+    files.finish()?;
+    views.show(args.answer.format, table.to_stdout)?;
+    Ok(Answer::of(routed.answer.is_traversable()))
+}

@@ -1,0 +1,80 @@
+//! The mesh of a free route, and the scenario for it.
+
+use std::path::PathBuf;
+
+use chta::{
+    report::DocumentKind,
+    scenario::{Scenario, TerrainSource, scenario_document},
+    study::{CaseRecord, checksums, scenario_files},
+};
+use serde::Serialize;
+
+use super::{EndOptions, apply_options, lacking_on, look_at_keys, read_source, relative_name, validated};
+use crate::cli::{
+    Failure,
+    args::{CommonArgs, JourneyArgs, SearchArgs},
+    claims,
+    effects::Purpose,
+    inputs, output, verbose,
+    wrong_thing::Role,
+};
+
+/// The scenario of a free route over a mesh.
+#[derive(Debug)]
+pub(crate) struct MeshPlanInput {
+    /// The scenario, whose terrain is a mesh as it stands.
+    pub(crate) scenario: Scenario,
+    /// The folder that its paths start from.
+    pub(crate) base: PathBuf,
+    /// The file of the mesh.
+    pub(crate) mesh: PathBuf,
+    /// The head of the document.
+    record: CaseRecord,
+}
+
+impl MeshPlanInput {
+    /// An answer as one document, with its warnings.
+    pub(crate) fn document<T: Serialize>(&self, warnings: &[String], answer: T) -> Result<String, Failure> {
+        Ok(self.record.document(DocumentKind::PlanMesh, warnings, answer).to_json()?)
+    }
+}
+
+/// Loads the scenario of a free route over a mesh; `None` for any other input.
+pub(crate) fn load_mesh_plan(
+    JourneyArgs { chain, start, goal }: &JourneyArgs,
+    common: &CommonArgs,
+    search: &SearchArgs,
+) -> Result<Option<MeshPlanInput>, Failure> {
+    let input = inputs::open(chain, Role::Chain)?;
+    if !input.is_scenario() || common.scenario.is_some() {
+        return Ok(None);
+    }
+    let mut source = read_source(&input)?;
+    apply_options(&mut source.entries, common, Some(search), EndOptions::of_path(*start, *goal));
+    if source.entries.is_unreadable() || !source.entries.ask_for_free_mesh() {
+        return Ok(None);
+    }
+    look_at_keys(&mut source, true)?;
+    let given = source.entries.clone();
+    let (base, name) = (source.base, source.name);
+    let scenario = validated(source.entries, &name, &source.text)?;
+    // Two terrains would have been refused.
+    let Some(TerrainSource::MeshInSpace { path, .. }) = &scenario.terrain else { return Ok(None) };
+    let mesh = base.join(path);
+    let lacking = scenario.lacks_on_a_dem();
+    if !lacking.is_empty() {
+        return Err(Failure::message(format!("{name}: {}", lacking_on(&lacking, "a mesh"))));
+    }
+    let warnings: Vec<String> = Purpose::Plan.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
+    output::warn_all(common.quiet, &warnings);
+    let files = scenario_files(&scenario, &base);
+    for file in &files {
+        claims::reads(file);
+        verbose::read(file);
+    }
+    let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
+    verbose::settings(&document, &scenario.search);
+    let inputs = checksums(&files, &relative_name)?;
+    let record = CaseRecord { scenario: document, inputs, warnings, crs: None };
+    Ok(Some(MeshPlanInput { scenario, base, mesh, record }))
+}

@@ -1,0 +1,228 @@
+//! A roadmap that grows until its best path stops gaining.
+
+use std::time::{Duration, Instant};
+
+use nalgebra::Point3;
+
+use super::{ContactSampler, DrawnContacts, Roadmap, RoadmapQuestion, RoadmapRoute, legs::least_amounts};
+use crate::{
+    ground::{MeshContact, MeshGround},
+    planner::{Amounts, LeastAmounts},
+    progress::{Cancelled, Progress},
+};
+
+/// When a roadmap stops growing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoadmapLimits {
+    /// The most contacts, start and goal included.
+    pub contacts_max: usize,
+    /// The longest time for it, judged before every round but the first; `None`: as long as it takes, and then the same roadmap whatever
+    /// the machine.
+    pub time_max: Option<Duration>,
+}
+
+/// Why a roadmap stopped growing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RoadmapEnd {
+    /// It has the most contacts.
+    Contacts,
+    /// Another round would take too long.
+    Time,
+    /// The best path gained less than [`GAIN_MIN`] in the last two rounds about it.
+    Gain,
+    /// No more contacts were found that could be of use.
+    Exhausted,
+}
+
+impl RoadmapEnd {
+    /// All reasons.
+    pub const ALL: [Self; 4] = [Self::Contacts, Self::Time, Self::Gain, Self::Exhausted];
+
+    /// The name in results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Contacts => "contacts",
+            Self::Time => "time",
+            Self::Gain => "gain",
+            Self::Exhausted => "exhausted",
+        }
+    }
+}
+
+crate::quantity::by_name!(RoadmapEnd, RoadmapEnd::ALL);
+
+/// The share of the objective that two rounds about the best path gain at least, if another one is to follow.
+pub const GAIN_MIN: f64 = 0.01;
+
+/// The contacts of the first round: some problems need no more, and they take milliseconds.
+const FIRST: usize = 256;
+
+/// The fewest contacts that a round adds, unless the most of all are fewer.
+const ROUND_LEAST: usize = 16;
+
+/// One round of a roadmap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoadmapRound {
+    /// Contacts so far.
+    pub contacts: usize,
+    /// Windows so far.
+    pub windows: usize,
+    /// What the best path takes so far; `None` while there is none.
+    pub totals: Option<Amounts>,
+}
+
+/// A roadmap that stopped growing, and its best path.
+#[derive(Clone, Debug)]
+pub struct GrownRoadmap {
+    /// The roadmap. Contact 0 is the start, contact 1 the goal.
+    pub roadmap: Roadmap,
+    /// The numbers of start and goal: both 0 where they are one point.
+    pub ends: (usize, usize),
+    /// The best path.
+    pub route: RoadmapRoute,
+    /// Its rounds.
+    pub history: Vec<RoadmapRound>,
+    /// Why it stopped.
+    pub end: RoadmapEnd,
+    /// The contacts that were drawn and left out.
+    pub drawn: DrawnContacts,
+}
+
+/// Grows a roadmap between two contacts: all over the mesh until a path is found, on to half of the contacts, and from then on half of each
+/// round about the best path. Once there is a path, contacts are left out through which no better one leads, by lower bounds along straight
+/// lines.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn grow_roadmap(
+    ground: &MeshGround,
+    ends: [MeshContact; 2],
+    sampler: &mut ContactSampler<'_>,
+    question: &RoadmapQuestion<'_>,
+    limits: RoadmapLimits,
+    progress: &dyn Progress,
+) -> Result<GrownRoadmap, Cancelled> {
+    let began = limits.time_max.map(|most| (Instant::now(), most));
+    let points = [ends[0].point_m(), ends[1].point_m()];
+    let is_there = (points[1] - points[0]).norm() <= ground.tree().resolution_m();
+    let numbers = if is_there { (0, 0) } else { (0, 1) };
+    let mut roadmap = Roadmap::new();
+    roadmap.extend(ground, ends.into(), progress)?;
+    let route = roadmap.route(ground, numbers, question)?;
+    let mut grown =
+        GrownRoadmap { roadmap, ends: numbers, route, history: Vec::new(), end: RoadmapEnd::Exhausted, drawn: sampler.drawn() };
+    grown.record();
+    let gains = Gains { least: least_amounts(ground), points };
+    let (mut weak_rounds, mut rounds) = (0, 0_u32);
+    grown.end = loop {
+        if is_there {
+            break RoadmapEnd::Exhausted;
+        }
+        let count = grown.roadmap.contact_count();
+        let refines = grown.route.path.is_some() && count >= limits.contacts_max / 2;
+        let wanted = match (&grown.route.path, refines) {
+            (_, true) => count + (count / 4).max(ROUND_LEAST),
+            (None, false) => (2 * count).max(FIRST.min(limits.contacts_max / 2)),
+            (Some(_), false) => (2 * count).min(limits.contacts_max / 2),
+        };
+        let wanted = wanted.min(limits.contacts_max);
+        if wanted <= count {
+            break RoadmapEnd::Contacts;
+        }
+        let Some(wanted) = in_time(began, &grown.roadmap, wanted) else { break RoadmapEnd::Time };
+        let before = grown.route.clone();
+        let is_useful = |point: &Point3<f64>| gains.are_possible(point, &before, question);
+        let added = wanted - count;
+        let mut contacts = Vec::with_capacity(added);
+        if let Some(path) = before.path.as_ref().filter(|_| refines) {
+            let about: Vec<_> = path.contacts.iter().map(|node| grown.roadmap.contact(*node).point_m()).collect();
+            // Wide for another way, narrow for the same one.
+            let share = if rounds.is_multiple_of(2) { 0.3 } else { 0.08 };
+            contacts = sampler.about(&about, share * mean_length_m(&about), added / 2, &is_useful);
+            rounds += 1;
+        }
+        contacts.extend(sampler.all_over(added - contacts.len(), &is_useful));
+        if contacts.is_empty() {
+            break RoadmapEnd::Exhausted;
+        }
+        grown.roadmap.extend(ground, contacts, progress)?;
+        let route = grown.roadmap.route(ground, numbers, question)?;
+        let gain = gain(&before, &route, question);
+        grown.route = route;
+        grown.record();
+        weak_rounds = if refines && gain < GAIN_MIN { weak_rounds + 1 } else { 0 };
+        if weak_rounds == 2 {
+            break RoadmapEnd::Gain;
+        }
+    };
+    grown.drawn = sampler.drawn();
+    Ok(grown)
+}
+
+impl GrownRoadmap {
+    fn record(&mut self) {
+        self.history.push(RoadmapRound {
+            contacts: self.roadmap.contact_count(),
+            windows: self.roadmap.window_count(),
+            totals: self.route.path.as_ref().map(|path| path.totals),
+        });
+    }
+}
+
+/// How many contacts a round may bring a roadmap to, by the time that its pairs took so far; `None` if the time is over.
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "an estimate from counts far below 2^53"
+)]
+fn in_time(began: Option<(Instant, Duration)>, roadmap: &Roadmap, wanted: usize) -> Option<usize> {
+    let (Some((began, most)), true) = (began, roadmap.contact_count() > 2) else { return Some(wanted) };
+    let passed = began.elapsed();
+    let left_s = most.checked_sub(passed)?.as_secs_f64();
+    let pairs = left_s * roadmap.pairs_tested() as f64 / passed.as_secs_f64().max(1e-9);
+    let count = roadmap.contact_count();
+    let most = (count as f64).mul_add(count as f64, pairs).sqrt() as usize;
+    (most >= count + ROUND_LEAST.min(wanted - count)).then(|| most.min(wanted))
+}
+
+/// The mean distance from one point to the next, m.
+#[expect(clippy::cast_precision_loss, reason = "a path has far fewer points than 2^53")]
+fn mean_length_m(points: &[Point3<f64>]) -> f64 {
+    let hops = points.len().saturating_sub(1).max(1);
+    points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>() / hops as f64
+}
+
+/// What a path through a point takes at least.
+struct Gains {
+    least: LeastAmounts,
+    points: [Point3<f64>; 2],
+}
+
+impl Gains {
+    /// Whether a path through a point may be better than the best one.
+    fn are_possible(&self, point: &Point3<f64>, best: &RoadmapRoute, question: &RoadmapQuestion<'_>) -> bool {
+        let Some(path) = best.path.as_ref().filter(|_| best.within) else { return true };
+        let over = |from: &Point3<f64>, to: &Point3<f64>| {
+            let away = to - from;
+            self.least.over(libm::hypot(away.x, away.y), away.z)
+        };
+        let through = over(&self.points[0], point).then(&over(point, &self.points[1]));
+        let amounts = question.objective.amounts().iter();
+        amounts
+            .map(|amount| (through.of(*amount), path.totals.of(*amount)))
+            .find(|(least, known)| least != known)
+            .is_some_and(|(least, known)| least < known)
+    }
+}
+
+/// The share of the first amount of the objective that differs which a path is better by than another.
+fn gain(before: &RoadmapRoute, after: &RoadmapRoute, question: &RoadmapQuestion<'_>) -> f64 {
+    let (Some(old), Some(new)) = (&before.path, &after.path) else { return if after.path.is_some() { 1.0 } else { 0.0 } };
+    if before.within != after.within {
+        return 1.0;
+    }
+    let amounts = question.objective.amounts().iter();
+    let mut differing = amounts.map(|amount| (old.totals.of(*amount), new.totals.of(*amount))).filter(|(old, new)| old != new);
+    differing.next().map_or(0.0, |(old, new)| (old - new) / old)
+}

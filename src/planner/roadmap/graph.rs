@@ -1,0 +1,206 @@
+//! The contacts and the windows between them, as a graph.
+
+use nalgebra::Point3;
+use petgraph::{
+    Direction as Towards,
+    graph::{DiGraph, EdgeIndex, NodeIndex},
+    visit::EdgeRef,
+};
+use rayon::prelude::*;
+
+use crate::{
+    ballistics::{LineOfSight, PathBounds},
+    ground::{MeshBuffers, MeshContact, MeshGround},
+    progress::{Cancelled, Meter, Progress, Stage},
+    quantity::SlopeInterval,
+};
+
+/// Contacts on a mesh, and every window of every hop between two of them.
+///
+/// Nodes are contacts. An edge is one window of a hop, as lofts over its line of sight: a hop with several windows has as many parallel
+/// edges, ascending.
+#[derive(Clone, Debug, Default)]
+pub struct Roadmap {
+    graph: DiGraph<MeshContact, SlopeInterval>,
+    pairs_tested: u64,
+}
+
+/// A hop of a roadmap: its landing and its windows.
+#[derive(Clone, Copy, Debug)]
+pub struct RoadmapHop {
+    /// The node it leads to.
+    pub landing: usize,
+    first: usize,
+    count: usize,
+}
+
+impl Roadmap {
+    /// A roadmap without contacts.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A roadmap of contacts and windows that are known: from take-off to landing, by the numbers of the contacts. All windows of one hop
+    /// stand together, ascending.
+    pub(super) fn of_parts(contacts: Vec<MeshContact>, windows: &[(u32, u32, SlopeInterval)], pairs_tested: u64) -> Self {
+        let mut graph = DiGraph::with_capacity(contacts.len(), windows.len());
+        for contact in contacts {
+            graph.add_node(contact);
+        }
+        for (from, to, lofts) in windows {
+            graph.add_edge(NodeIndex::new(*from as usize), NodeIndex::new(*to as usize), *lofts);
+        }
+        Self { graph, pairs_tested }
+    }
+
+    /// The graph, for the algorithms of petgraph.
+    pub const fn graph(&self) -> &DiGraph<MeshContact, SlopeInterval> {
+        &self.graph
+    }
+
+    /// The number of contacts.
+    pub fn contact_count(&self) -> usize {
+        self.graph.node_count()
+    }
+
+    /// The number of windows.
+    pub fn window_count(&self) -> usize {
+        self.graph.edge_count()
+    }
+
+    /// Ordered pairs of contacts whose hop was tested.
+    pub const fn pairs_tested(&self) -> u64 {
+        self.pairs_tested
+    }
+
+    /// A contact by its number.
+    pub fn contact(&self, node: usize) -> &MeshContact {
+        &self.graph[NodeIndex::new(node)]
+    }
+
+    /// The hops out of a contact, in the same order for any number of threads.
+    pub fn hops_from(&self, node: usize) -> impl Iterator<Item = RoadmapHop> + '_ {
+        let mut edges = self.graph.edges(NodeIndex::new(node)).peekable();
+        std::iter::from_fn(move || {
+            // Edges come last first, and those of one hop were added one after another.
+            let last = edges.next()?;
+            let mut hop = RoadmapHop { landing: last.target().index(), first: last.id().index(), count: 1 };
+            while let Some(next) = edges.next_if(|edge| edge.target() == last.target()) {
+                (hop.first, hop.count) = (next.id().index(), hop.count + 1);
+            }
+            Some(hop)
+        })
+    }
+
+    /// The windows of a hop, ascending.
+    pub fn windows(&self, hop: RoadmapHop) -> impl Iterator<Item = SlopeInterval> + '_ {
+        self.graph.raw_edges()[hop.first..hop.first + hop.count].iter().map(|edge| edge.weight)
+    }
+
+    /// The windows between two contacts, ascending; none if no hop is feasible.
+    pub fn windows_between(&self, from: usize, to: usize) -> Vec<SlopeInterval> {
+        self.hops_from(from).find(|hop| hop.landing == to).map(|hop| self.windows(hop).collect()).unwrap_or_default()
+    }
+
+    /// Adds contacts, and tests every hop between two contacts of which at least one is new. The result is the same for any number of
+    /// threads.
+    ///
+    /// # Errors
+    /// [`Cancelled`]; the roadmap is then as it was.
+    ///
+    /// # Complexity
+    /// A square root for every pair; the windows of those that the greatest speeds may span.
+    pub fn extend(&mut self, ground: &MeshGround, contacts: Vec<MeshContact>, progress: &dyn Progress) -> Result<(), Cancelled> {
+        let meter = Meter::new(progress, Stage::Search);
+        let known = self.contact_count();
+        let mut points: Vec<Point3<f64>> = self.graph.node_weights().map(MeshContact::point_m).collect();
+        points.extend(contacts.iter().map(MeshContact::point_m));
+        let of = |node: usize| if node < known { self.contact(node) } else { &contacts[node - known] };
+        let bounds = speed_bounds(ground);
+        let row = |buffers: &mut MeshBuffers, from: usize| {
+            let mut counter = meter.counter();
+            let mut found = Vec::new();
+            let landings = if from < known { known..points.len() } else { 0..points.len() };
+            for to in landings.filter(|to| *to != from) {
+                counter.pair()?;
+                let away = points[to] - points[from];
+                if !bounds.span(away.norm(), away.z) {
+                    continue;
+                }
+                if let Some((_, windows)) = ground.windows(of(from), of(to), buffers) {
+                    found.extend(windows.iter().map(|lofts| (to, *lofts)));
+                }
+            }
+            Ok(found)
+        };
+        let rows = (0..points.len()).into_par_iter().map_init(MeshBuffers::default, row);
+        let rows: Vec<Vec<(usize, SlopeInterval)>> = rows.collect::<Result<_, Cancelled>>()?;
+        meter.check()?;
+        let (all, old) = (points.len() as u64, known as u64);
+        self.pairs_tested += all * all.saturating_sub(1) - old * old.saturating_sub(1);
+        for contact in contacts {
+            self.graph.add_node(contact);
+        }
+        self.graph.reserve_edges(rows.iter().map(Vec::len).sum());
+        for (from, row) in rows.into_iter().enumerate() {
+            for (to, lofts) in row {
+                self.graph.add_edge(NodeIndex::new(from), NodeIndex::new(to), lofts);
+            }
+        }
+        Ok(())
+    }
+
+    /// The line of sight of a hop.
+    pub fn sight(&self, ground: &MeshGround, from: usize, to: usize) -> Option<LineOfSight> {
+        Some(ground.course(self.contact(from), self.contact(to))?.sight)
+    }
+
+    /// The fewest hops from every contact to one; `None` from where it is not reached.
+    pub fn hops_to(&self, goal: usize) -> Vec<Option<u32>> {
+        self.levels(goal, Towards::Incoming)
+    }
+
+    /// The fewest hops from one contact to every other; `None` to where it does not lead.
+    pub fn hops_out_of(&self, start: usize) -> Vec<Option<u32>> {
+        self.levels(start, Towards::Outgoing)
+    }
+
+    /// Breadth-first search, along the edges or against them.
+    fn levels(&self, first: usize, towards: Towards) -> Vec<Option<u32>> {
+        let mut levels = vec![None; self.contact_count()];
+        levels[first] = Some(0);
+        let mut layer = vec![NodeIndex::new(first)];
+        let mut hops = 0;
+        while !layer.is_empty() {
+            hops += 1;
+            let mut next = Vec::new();
+            for node in layer {
+                for neighbour in self.graph.neighbors_directed(node, towards) {
+                    let level = &mut levels[neighbour.index()];
+                    if level.is_none() {
+                        *level = Some(hops);
+                        next.push(neighbour);
+                    }
+                }
+            }
+            layer = next;
+        }
+        levels
+    }
+
+    /// All windows, in the order in which they were added: take-off, landing, lofts.
+    pub(super) fn all_windows(&self) -> impl Iterator<Item = (usize, usize, SlopeInterval)> + '_ {
+        let ends = |edge: EdgeIndex| self.graph.edge_endpoints(edge);
+        self.graph.edge_indices().filter_map(move |edge| {
+            let (from, to) = ends(edge)?;
+            Some((from.index(), to.index(), self.graph[edge]))
+        })
+    }
+}
+
+/// Bounds from the greatest speeds of a hopper over a ground.
+pub(super) fn speed_bounds(ground: &MeshGround) -> PathBounds {
+    let envelope = ground.envelope();
+    let limits = envelope.hopper().limits();
+    PathBounds::new(limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s(), envelope.gravity_m_s2())
+}

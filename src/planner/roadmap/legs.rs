@@ -1,0 +1,104 @@
+//! The hops of a roadmap, each with its distinct commands.
+
+use super::Roadmap;
+use crate::{
+    ballistics::{Arc, TakeoffChoice},
+    ground::MeshGround,
+    planner::{Amount, Amounts, LeastAmounts, LegGraph, LegVisitor, PathStep, SearchedCommands, Successor},
+    progress::Cancelled,
+};
+
+/// The graph of a roadmap from a start to a goal.
+#[derive(Debug)]
+pub struct RoadmapLegs<'a> {
+    roadmap: &'a Roadmap,
+    ground: &'a MeshGround,
+    ends: (usize, usize),
+    commands: Vec<TakeoffChoice>,
+    least: LeastAmounts,
+    /// The fewest hops to the goal: no path of the roadmap takes fewer.
+    hops_left: Vec<Option<u32>>,
+}
+
+impl<'a> RoadmapLegs<'a> {
+    /// The graph. `offered`: the commands of a hop, with the `takeoff` that is chosen.
+    pub fn new(
+        roadmap: &'a Roadmap,
+        ground: &'a MeshGround,
+        ends: (usize, usize),
+        (offered, takeoff): (SearchedCommands, TakeoffChoice),
+    ) -> Self {
+        Self {
+            roadmap,
+            ground,
+            ends,
+            commands: offered.choices(takeoff, false),
+            least: least_amounts(ground),
+            hops_left: roadmap.hops_to(ends.1),
+        }
+    }
+
+    /// Start and goal.
+    pub const fn ends(&self) -> (usize, usize) {
+        self.ends
+    }
+
+    /// The fewest hops from every contact to the goal; `None` from where it is not reached.
+    pub fn hops_left(&self) -> &[Option<u32>] {
+        &self.hops_left
+    }
+
+    /// The arc of a step of a path.
+    pub fn arc(&self, step: &PathStep) -> Option<Arc> {
+        let sight = self.roadmap.sight(self.ground, step.from, step.to)?;
+        let choice = *self.commands.get(step.command as usize)?;
+        let (_, loft) = choice.among(sight, self.roadmap.windows_between(step.from, step.to))?;
+        Some(Arc::new(sight, loft, self.ground.envelope().gravity_m_s2()))
+    }
+}
+
+/// Lower bounds over a mesh.
+pub(super) fn least_amounts(ground: &MeshGround) -> LeastAmounts {
+    let envelope = ground.envelope();
+    let limits = envelope.hopper().limits();
+    let bounds = ground.tree().mesh().bounds();
+    let speeds_m_s = (limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s());
+    LeastAmounts::new(limits, envelope.gravity_m_s2(), speeds_m_s, bounds.high_m - bounds.low_m)
+}
+
+impl LegGraph for RoadmapLegs<'_> {
+    fn nodes(&self) -> usize {
+        self.roadmap.contact_count()
+    }
+
+    fn successors(&self, node: usize, visitor: &mut dyn LegVisitor) -> Result<(), Cancelled> {
+        const ONE_HOP: Amounts = Amounts::NONE.with(Amount::Hops, 1.0);
+        let (roadmap, envelope) = (self.roadmap, self.ground.envelope());
+        for hop in roadmap.hops_from(node) {
+            if self.hops_left[hop.landing].is_none() || !visitor.may_improve(hop.landing, &ONE_HOP) {
+                continue;
+            }
+            let Some(sight) = roadmap.sight(self.ground, node, hop.landing) else { continue };
+            if !visitor.wants(hop.landing, &self.least.of_hop(sight)) {
+                continue;
+            }
+            let mut known = [f64::NAN; TakeoffChoice::ALL.len()];
+            for ((command, choice), number) in self.commands.iter().enumerate().zip(0..) {
+                let Some((_, loft)) = choice.among(sight, roadmap.windows(hop)) else { continue };
+                if !known[..command].contains(&loft) {
+                    let arc = Arc::new(sight, loft, envelope.gravity_m_s2());
+                    let amounts = Amounts::of_arc(&arc, envelope.hopper().limits(), node == self.ends.0);
+                    visitor.visit(&Successor { node: hop.landing, command: number, amounts });
+                }
+                known[command] = loft;
+            }
+        }
+        Ok(())
+    }
+
+    fn least_to_goal(&self, node: usize) -> Amounts {
+        let (here, goal) = (self.roadmap.contact(node).point_m(), self.roadmap.contact(self.ends.1).point_m());
+        let away = goal - here;
+        self.least.over_in(libm::hypot(away.x, away.y), away.z, self.hops_left[node].map_or(0, u64::from))
+    }
+}

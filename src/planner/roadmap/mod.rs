@@ -1,0 +1,29 @@
+//! Roadmaps on meshes: contacts, every window of every hop between two of them, and the best path, from a roadmap that grows about it.
+//!
+//! ```text
+//!      o            o       contacts: by area, and on every facet
+//!     / \  .--.    /        edges: the windows of collision-free arcs, exactly; none is missed between two contacts
+//!    S   o'    '--o---G     the best path by an objective, within budgets; then more contacts about it
+//! ```
+//!
+//! A path of a roadmap exists. That a roadmap has none, or none better, proves nothing: more contacts may give one.
+//!
+//! Source: Campana and Laumond 2016, *Ballistic motion planning*, whose roadmaps sample the arcs as well; the exact windows make their
+//! convergence property true.
+
+mod anytime;
+mod file;
+mod graph;
+mod legs;
+mod route;
+mod sample;
+
+pub use anytime::{GAIN_MIN, GrownRoadmap, RoadmapEnd, RoadmapLimits, RoadmapRound, grow_roadmap};
+pub use file::RoadmapFileError;
+pub use graph::{Roadmap, RoadmapHop};
+pub use legs::RoadmapLegs;
+pub use route::{RoadmapGap, RoadmapPath, RoadmapQuestion, RoadmapRoute};
+pub use sample::{ContactSampler, DrawnContacts, NothingWithin, SpaceBounds};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,204 @@
+//! The best path of a roadmap, and what lies between start and goal where there is none.
+
+use nalgebra::Point3;
+
+use super::{Roadmap, RoadmapLegs, graph::speed_bounds};
+use crate::{
+    ballistics::{Arc, TakeoffChoice},
+    graph::RefusalCounts,
+    ground::{MeshConflict, MeshGround},
+    planner::{
+        Amount, Amounts, Budgets, FoundPath, LabelCap, Objective, SearchedCommands, UnmetBudget, front,
+        search::{search, without_budgets},
+    },
+    progress::Cancelled,
+    world::Limit,
+};
+
+/// What a path of a roadmap is searched for.
+#[derive(Clone, Copy, Debug)]
+pub struct RoadmapQuestion<'a> {
+    /// What is to be least.
+    pub objective: &'a Objective,
+    /// The greatest totals.
+    pub budgets: &'a Budgets,
+    /// The commands of a hop.
+    pub commands: SearchedCommands,
+    /// The command of a hop that offers no others.
+    pub takeoff: TakeoffChoice,
+    /// How many labels are kept.
+    pub cap: LabelCap,
+}
+
+/// A path of a roadmap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoadmapPath {
+    /// The contacts from start to goal, by their numbers.
+    pub contacts: Vec<usize>,
+    /// The arc from each contact to the next.
+    pub arcs: Vec<Arc>,
+    /// What it takes.
+    pub totals: Amounts,
+}
+
+/// The result of a search over a roadmap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoadmapRoute {
+    /// The best path within the budgets, or the best without budgets, if no path keeps them; `None` if the goal was not reached over these
+    /// contacts.
+    pub path: Option<RoadmapPath>,
+    /// Whether it keeps the budgets.
+    pub within: bool,
+    /// If not: those that it exceeds. If the least of each is within it, no path keeps all of them at once.
+    pub unmet: Vec<UnmetBudget>,
+    /// Whether labels were left out: the path may then not be the best, and that none keeps the budgets is not certain.
+    pub capped: bool,
+}
+
+impl Roadmap {
+    /// The best path from a start to a goal by an objective, within budgets.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn route(
+        &self,
+        ground: &MeshGround,
+        ends: (usize, usize),
+        question: &RoadmapQuestion<'_>,
+    ) -> Result<RoadmapRoute, Cancelled> {
+        let RoadmapQuestion { objective, budgets, commands, takeoff, cap } = *question;
+        let legs = RoadmapLegs::new(self, ground, ends, (commands, takeoff));
+        let no = RoadmapRoute { path: None, within: false, unmet: Vec::new(), capped: false };
+        if legs.hops_left()[ends.0].is_none() {
+            return Ok(no);
+        }
+        let found = search(&legs, ends, objective, budgets, cap)?;
+        if let Some(path) = found.path {
+            return Ok(RoadmapRoute { path: Some(path_of(&legs, &path)), within: true, capped: found.capped, ..no });
+        }
+        let mut capped = found.capped;
+        let mut best = without_budgets(&legs, ends, objective, budgets, cap)?;
+        if best.is_none() {
+            // Labels of every path were left out: that of the fewest hops is a path all the same.
+            let fewest = search(&legs, ends, &Objective::of(Amount::Hops), &Budgets::NONE, LabelCap::NONE)?.path;
+            best = fewest.map(|path| (path, Vec::new()));
+            capped = true;
+        }
+        let Some((path, unmet)) = best else { return Ok(no) };
+        let within = budgets.exceeded_by(&path.totals).next().is_none();
+        Ok(RoadmapRoute { path: Some(path_of(&legs, &path)), within, unmet, capped })
+    }
+
+    /// The Pareto front of hops against another amount, within budgets, in ascending order of hops, and whether labels were left out.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn front(
+        &self,
+        ground: &MeshGround,
+        ends: (usize, usize),
+        (amount, question): (Amount, &RoadmapQuestion<'_>),
+    ) -> Result<(Vec<RoadmapPath>, bool), Cancelled> {
+        let legs = RoadmapLegs::new(self, ground, ends, (question.commands, question.takeoff));
+        let (paths, capped) = front(&legs, ends, (Amount::Hops, amount), question.budgets, question.cap)?;
+        Ok((paths.iter().map(|path| path_of(&legs, path)).collect(), capped))
+    }
+
+    /// What lies between the contacts that a start reaches and those that lead to a goal.
+    pub fn gap(&self, ground: &MeshGround, (start, goal): (usize, usize)) -> RoadmapGap {
+        let (reached, leading) = (numbers(&self.hops_out_of(start)), numbers(&self.hops_to(goal)));
+        let point = |node: usize| self.contact(node).point_m();
+        let nearest = |of: &[usize], to: usize| {
+            let away = |node: &usize| (point(*node) - point(to)).norm_squared();
+            of.iter().copied().min_by(|a, b| away(a).total_cmp(&away(b)))
+        };
+        let bounds = speed_bounds(ground);
+        let spanned = |from: usize| {
+            leading.iter().copied().filter(move |to| {
+                let away = point(*to) - point(from);
+                bounds.span(away.norm(), away.z)
+            })
+        };
+        let (mut pairs, mut least_m2) = (0_u64, f64::INFINITY);
+        for &from in &reached {
+            for to in spanned(from) {
+                pairs += 1;
+                least_m2 = least_m2.min((point(to) - point(from)).norm_squared());
+            }
+        }
+        let every = pairs.div_ceil(RoadmapGap::JUDGED_MAX).max(1);
+        let mut gap = RoadmapGap {
+            nearest_m: point(nearest(&reached, goal).unwrap_or(start)),
+            reached: reached.len(),
+            leads_from_m: point(nearest(&leading, start).unwrap_or(goal)),
+            leading: leading.len(),
+            width_m: (pairs > 0).then(|| least_m2.sqrt()),
+            pairs,
+            judged: 0,
+            refusals: RefusalCounts::default(),
+            vertical: 0,
+        };
+        let mut number = 0;
+        for &from in &reached {
+            for to in spanned(from) {
+                number += 1;
+                if !u64::is_multiple_of(number - 1, every) {
+                    continue;
+                }
+                gap.judged += 1;
+                match ground.takeoff_set(self.contact(from), self.contact(to)) {
+                    None => gap.vertical += 1,
+                    Some(set) => match set.conflict() {
+                        Some(MeshConflict::Limits(conflict)) => gap.refusals.count(conflict.counted_under()),
+                        Some(MeshConflict::Terrain { .. }) => gap.refusals.count(Limit::Terrain),
+                        None => {}
+                    },
+                }
+            }
+        }
+        gap
+    }
+}
+
+/// The gap between the contacts reached from a start and those from which a goal can be reached, over the same roadmap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoadmapGap {
+    /// The reached contact nearest to the goal, by the straight line.
+    pub nearest_m: Point3<f64>,
+    /// How many contacts are reached, the start included.
+    pub reached: usize,
+    /// The contact nearest to the start from which the goal can be reached.
+    pub leads_from_m: Point3<f64>,
+    /// How many contacts lead to the goal, itself included.
+    pub leading: usize,
+    /// The least straight distance from a reached contact to one that leads to the goal, among the pairs; `None` without pairs.
+    pub width_m: Option<f64>,
+    /// How many pairs of a reached contact and one that leads to the goal the greatest speeds may span.
+    pub pairs: u64,
+    /// Of how many of them the hop was judged: evenly of all, at most [`JUDGED_MAX`](Self::JUDGED_MAX).
+    pub judged: u64,
+    /// The limits that refuse the hops that were judged.
+    pub refusals: RefusalCounts,
+    /// How many of them go straight up, which no hop does.
+    pub vertical: u64,
+}
+
+impl RoadmapGap {
+    /// The most hops that are judged, which takes about a second on a large mesh.
+    pub const JUDGED_MAX: u64 = 5_000;
+}
+
+/// The numbers of the nodes with a level.
+fn numbers(levels: &[Option<u32>]) -> Vec<usize> {
+    levels.iter().enumerate().filter(|(_, level)| level.is_some()).map(|(node, _)| node).collect()
+}
+
+/// The contacts, arcs and totals of a path.
+fn path_of(legs: &RoadmapLegs<'_>, path: &FoundPath) -> RoadmapPath {
+    let landings = path.steps.iter().map(|step| step.to);
+    RoadmapPath {
+        contacts: std::iter::once(legs.ends().0).chain(landings).collect(),
+        arcs: path.steps.iter().filter_map(|step| legs.arc(step)).collect(),
+        totals: path.totals,
+    }
+}

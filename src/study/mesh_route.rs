@@ -1,0 +1,233 @@
+//! A free route over a mesh: through caves, under overhangs, up and down walls.
+
+use std::{path::Path, time::Duration};
+
+use nalgebra::Point3;
+
+use super::{
+    MeshHopError,
+    mesh_hop::{check_keys, mesh_ground},
+};
+use crate::{
+    ballistics::PathBounds,
+    graph::proof::ProofVerdict,
+    ground::{MeshContact, MeshGround},
+    path::{HopPath, path_over_mesh},
+    planner::{
+        LabelCap,
+        roadmap::{
+            ContactSampler, GrownRoadmap, NothingWithin, RoadmapEnd, RoadmapGap, RoadmapLimits, RoadmapQuestion, SpaceBounds,
+            grow_roadmap,
+        },
+    },
+    progress::{Cancelled, Progress},
+    report::{
+        DeratingRecord, HopRecord, MeshContactRecord, MeshPlanAnswer, ObjectiveRecord, PropellantShortage, RoadmapRecord,
+        TotalsRecord, hops_of,
+    },
+    scenario::{Scenario, TerrainSource},
+};
+
+/// What is asked.
+#[derive(Clone, Debug)]
+pub struct MeshRouteQuestion<'a> {
+    /// The scenario, with [`TerrainSource::MeshInSpace`].
+    pub scenario: &'a Scenario,
+    /// The folder that its paths start from.
+    pub base: &'a Path,
+}
+
+/// Why there is no answer. That there is no path is one.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshRouteError {
+    /// The mesh, its keys, or an end that gives no contact.
+    #[error(transparent)]
+    Mesh(#[from] MeshHopError),
+    /// A terrain that is no mesh as it stands.
+    #[error("terrain is no mesh with route = \"free\", expected one for a free route over it")]
+    NoMesh,
+    /// An end outside the bounds of the contacts.
+    #[error(
+        "the {end} is moved to ({}, {}, {}) m on the surface, expected it within search.bounds_m, {bounds}: widen them, or move the {end}",
+        point_m.x, point_m.y, point_m.z
+    )]
+    OutsideBounds {
+        /// Start or goal.
+        end: &'static str,
+        /// Where it is on the surface.
+        point_m: Point3<f64>,
+        /// The bounds.
+        bounds: SpaceBounds,
+    },
+    /// An end that has no room for its stand-off.
+    #[error(
+        "the {end} at ({}, {}, {}) m of the surface cannot stand off it by search.stand_off_m, {stand_off_m} m: another part of the mesh is \
+         nearer; give less, or move the {end}",
+        point_m.x, point_m.y, point_m.z
+    )]
+    NoStandOff {
+        /// Start or goal.
+        end: &'static str,
+        /// Where it is on the surface.
+        point_m: Point3<f64>,
+        /// The stand-off, m.
+        stand_off_m: f64,
+    },
+    /// Bounds without a facet.
+    #[error("search.bounds_m: {0}")]
+    NothingWithin(#[from] NothingWithin),
+    /// A path that the mesh does not have.
+    #[error(
+        "a hop of the planned path is not feasible over the mesh; this is a defect of chta, please report it with the scenario"
+    )]
+    Lost,
+    /// It was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// A plan over a mesh, with everything that its views need.
+#[derive(Clone, Debug)]
+pub struct MeshRouted {
+    /// The ground under the limits that planning may use.
+    pub ground: MeshGround,
+    /// The roadmap and its best path.
+    pub grown: GrownRoadmap,
+    /// The path with all its numbers.
+    pub path: Option<HopPath>,
+    /// The answer as plain data.
+    pub answer: MeshPlanAnswer,
+    /// Warnings about the mesh, the search and the path.
+    pub warnings: Vec<String>,
+}
+
+/// Plans the best path over a mesh by the objective of a scenario, within its budgets, for exact commands.
+///
+/// # Errors
+/// [`MeshRouteError`].
+pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> Result<MeshRouted, MeshRouteError> {
+    let scenario = question.scenario;
+    let Some(TerrainSource::MeshInSpace { path: file, scale, start_m, goal_m }) = &scenario.terrain else {
+        return Err(MeshRouteError::NoMesh);
+    };
+    check_keys(scenario)?;
+    let (ground, mut warnings) = mesh_ground(scenario, &question.base.join(file), *scale)?;
+    let search = &scenario.mesh_search;
+    let given_m = [*start_m, *goal_m];
+    let surface = [on_surface(&ground, search.bounds, "start", *start_m)?, on_surface(&ground, search.bounds, "goal", *goal_m)?];
+    let stand_off_m = search.stand_off_m.unwrap_or(0.0);
+    let stood = |contact: &MeshContact, end| {
+        let point_m = contact.point_m();
+        ground.stood_off(contact, stand_off_m).ok_or(MeshRouteError::NoStandOff { end, point_m, stand_off_m })
+    };
+    let ends = [stood(&surface[0], "start")?, stood(&surface[1], "goal")?];
+    let mut sampler = ContactSampler::new(&ground, search.bounds, stand_off_m, search.seed.unwrap_or(0))?;
+    let (objective, budgets) = (scenario.full_objective(), scenario.total_budgets());
+    let asked = RoadmapQuestion {
+        objective: &objective,
+        budgets: &budgets,
+        commands: scenario.commands,
+        takeoff: scenario.search.takeoff,
+        cap: LabelCap::default(),
+    };
+    let limits = RoadmapLimits {
+        contacts_max: search.contacts(),
+        time_max: search.time_max_s.map(|time_s| Duration::try_from_secs_f64(time_s).unwrap_or(Duration::MAX)),
+    };
+    let grown = grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?;
+    let facets = [sampler.facet_count(), sampler.turned()];
+    let path = match &grown.route.path {
+        None => None,
+        Some(found) => {
+            let contacts: Vec<&MeshContact> = found.contacts.iter().map(|node| grown.roadmap.contact(*node)).collect();
+            Some(path_over_mesh(&ground, &contacts, &found.arcs).ok_or(MeshRouteError::Lost)?)
+        }
+    };
+    warnings.extend(path.iter().flat_map(|path| scenario.path_warnings(path)));
+    warnings.extend(left_out(scenario, &grown, facets));
+    let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends));
+    let answer = answer((scenario, &ground), (given_m, &surface, *scale), (&grown, facets), (path.as_ref(), gap.as_ref()));
+    Ok(MeshRouted { ground, grown, path, answer, warnings })
+}
+
+/// The contact nearest to an end, within the bounds.
+fn on_surface(
+    ground: &MeshGround,
+    bounds: Option<SpaceBounds>,
+    end: &'static str,
+    at: Point3<f64>,
+) -> Result<MeshContact, MeshRouteError> {
+    let contact = ground.contact(at).map_err(|problem| MeshHopError::NoContact { end, problem })?;
+    match bounds {
+        Some(bounds) if !bounds.contain(&contact.point_m()) => {
+            Err(MeshRouteError::OutsideBounds { end, point_m: contact.point_m(), bounds })
+        }
+        _ => Ok(contact),
+    }
+}
+
+fn answer(
+    (scenario, ground): (&Scenario, &MeshGround),
+    (given_m, surface, mesh_scale): ([Point3<f64>; 2], &[MeshContact; 2], f64),
+    (grown, facets): (&GrownRoadmap, [usize; 2]),
+    (path, gap): (Option<&HopPath>, Option<&RoadmapGap>),
+) -> MeshPlanAnswer {
+    let (objective, budgets) = (scenario.full_objective(), scenario.budget.totals(&scenario.hopper));
+    let route = &grown.route;
+    let totals = route.path.as_ref().map(|path| path.totals);
+    let objective_record = ObjectiveRecord::new(&objective, &budgets, (totals, &route.unmet, route.capped));
+    let propellant_shortage = path.and_then(|path| PropellantShortage::of(&path.totals));
+    let is_traversable = path.is_some() && propellant_shortage.is_none() && objective_record.is_met();
+    let away = surface[1].point_m() - surface[0].point_m();
+    let limits = ground.envelope().hopper().limits();
+    let bounds =
+        PathBounds::new(limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s(), ground.envelope().gravity_m_s2());
+    let [start, goal] = [0, 1].map(|i| MeshContactRecord::new(ground, &surface[i], given_m[i].coords.into()));
+    // Contacts that stand off the surface are as far apart as their points.
+    let [first, last] = [grown.ends.0, grown.ends.1].map(|node| grown.roadmap.contact(node).point_m());
+    let between = if grown.ends.0 == grown.ends.1 { nalgebra::Vector3::zeros() } else { last - first };
+    MeshPlanAnswer {
+        mesh_scale,
+        start,
+        goal,
+        verdict: if is_traversable { ProofVerdict::Traversable } else { ProofVerdict::Open },
+        hops: totals.as_ref().map(hops_of),
+        hops_lower_bound: bounds.hops(libm::hypot(between.x, between.y), between.z),
+        straight_line_m: away.norm().min(between.norm()),
+        objective: objective_record,
+        derating: DeratingRecord::of(&scenario.derating),
+        propellant_shortage,
+        roadmap: RoadmapRecord::new(grown, &objective, facets),
+        gap: gap.map(Into::into),
+        verified: None,
+        path: path.map(|path| HopRecord::rows(path, None)).unwrap_or_default(),
+        totals: path.map(|path| TotalsRecord::from(&path.totals)),
+    }
+}
+
+/// What the plan leaves out of a scenario, and what its contacts leave out of the mesh.
+fn left_out(scenario: &Scenario, grown: &GrownRoadmap, [facets, turned]: [usize; 2]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if scenario.uncertainty.is_some() {
+        warnings.push(
+            "a free route over a mesh is planned for exact commands: the errors of [uncertainty] choose none of its contacts and commands"
+                .to_owned(),
+        );
+    }
+    if !scenario.hopper.limits().steps.is_continuous() {
+        warnings.push(
+            "a free route over a mesh has exact commands, and this machine takes its commands in steps, which may miss a landing or break a \
+             limit"
+                .to_owned(),
+        );
+    }
+    let ended_early = matches!(grown.end, RoadmapEnd::Contacts | RoadmapEnd::Time);
+    if turned < facets && ended_early {
+        warnings.push(format!(
+            "{turned} of {facets} facets of the mesh within the bounds had a contact in their middle, and the others only by chance: a path \
+             over small facets may have been missed; more contacts (search.contacts_max) or narrower search.bounds_m reach more of them"
+        ));
+    }
+    warnings
+}
