@@ -30,7 +30,8 @@ fn hop(ground: &MeshGround, [takeoff, landing]: [&MeshContact; 2], arc: &Arc, al
     let (set, limits) = (ground.takeoff_set(takeoff, landing)?, ground.envelope().hopper().limits());
     let course = *set.course();
     let heading = course.plane.heading;
-    let [from, to] = [(takeoff, Contact::Takeoff), (landing, Contact::Landing)].map(|(at, kind)| ground.allowed(at, heading, kind).ok());
+    let [from, to] =
+        [(takeoff, Contact::Takeoff), (landing, Contact::Landing)].map(|(at, kind)| ground.allowed(at, heading, kind).ok());
     let (from, to) = (from?, to?);
     let window = set.window_of(arc.loft())?;
     let lofts = window.lofts;

@@ -145,7 +145,9 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
     let (mut dem, mut mesh, mut mesh_scale, mut chain) = (None, None, None, None);
     match source {
         Some(TerrainSource::Dem { path, .. }) => dem = Some(file(path)),
-        Some(TerrainSource::Mesh { path, scale, .. } | TerrainSource::MeshInSpace { path, scale, .. }) => (mesh, mesh_scale) = (Some(file(path)), Some((*scale).into())),
+        Some(TerrainSource::Mesh { path, scale, .. } | TerrainSource::MeshInSpace { path, scale, .. }) => {
+            (mesh, mesh_scale) = (Some(file(path)), Some((*scale).into()))
+        }
         Some(TerrainSource::Chain { path }) => chain = Some(file(path)),
         None => {}
     }

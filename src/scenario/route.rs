@@ -98,7 +98,8 @@ fn refuse_beside_mesh(entries: &mut Entries) {
         }
     }
     if entries.objective("search", "objective").is_some_and(|objective| objective.amounts().contains(&Amount::Risk)) {
-        let message = "search.objective has risk, which is estimated over a DEM or a profile, and not for a free route over a mesh".to_owned();
+        let message = "search.objective has risk, which is estimated over a DEM or a profile, and not for a free route over a mesh"
+            .to_owned();
         entries.problem(("search", "objective"), ProblemKind::Conflict, message, "remove risk from the objective");
     }
 }

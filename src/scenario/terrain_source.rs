@@ -109,8 +109,10 @@ pub(super) fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
         [(kind, path)] => {
             for end in ["start_m", "goal_m"] {
                 if entries.triple("terrain", end).is_some() {
-                    let message = format!("terrain.{end} has three numbers, expected two, [x, y], where terrain has a {kind} that is sliced");
-                    let help = "leave z out, or for a route over a mesh in any direction give mesh = \"file.obj\" with route = \"free\"";
+                    let message =
+                        format!("terrain.{end} has three numbers, expected two, [x, y], where terrain has a {kind} that is sliced");
+                    let help =
+                        "leave z out, or for a route over a mesh in any direction give mesh = \"file.obj\" with route = \"free\"";
                     entries.problem(("terrain", end), ProblemKind::Value, message, help);
                 }
             }
@@ -140,7 +142,9 @@ pub(super) fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
 fn ends_in_space(entries: &mut Entries) -> Option<[[f64; 3]; 2]> {
     let mut of_end = |end: &str| {
         let (key, degrees) = (format!("{end}_m"), format!("{end}_lonlat_deg"));
-        let help = format!("give {key} = [x, y, z], in the mesh's own metres: the route begins and ends at the nearest points of its surface");
+        let help = format!(
+            "give {key} = [x, y, z], in the mesh's own metres: the route begins and ends at the nearest points of its surface"
+        );
         if entries.value("terrain", &degrees).is_some() {
             let message = "terrain gives longitude and latitude for a mesh, which has no projection".to_owned();
             entries.problem(("terrain", &degrees), ProblemKind::Conflict, message, help);

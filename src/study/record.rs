@@ -45,7 +45,9 @@ impl CaseRecord {
 pub fn scenario_files(scenario: &Scenario, base: &Path) -> Vec<PathBuf> {
     let mut files = match &scenario.terrain {
         Some(TerrainSource::Dem { path, .. }) => raster_files(&base.join(path)),
-        Some(source @ (TerrainSource::Mesh { .. } | TerrainSource::MeshInSpace { .. } | TerrainSource::Chain { .. })) => vec![base.join(source.path())],
+        Some(source @ (TerrainSource::Mesh { .. } | TerrainSource::MeshInSpace { .. } | TerrainSource::Chain { .. })) => {
+            vec![base.join(source.path())]
+        }
         None => Vec::new(),
     };
     files.extend(Overlays::files(scenario).flat_map(|overlay| raster_files(&base.join(overlay))));

@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 
 use crate::{
     report::{
-        CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshHopAnswer, MeshPlanAnswer,
-        PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
+        CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshHopAnswer,
+        MeshPlanAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
     },
     scenario::scenario_schema,
 };

@@ -70,9 +70,7 @@ impl MeshGround {
     /// By how much the facets at a contact are less steep than the rest slope, degrees; infinite where every slope holds.
     pub fn rest_margin_deg(&self, contact: &MeshContact) -> f64 {
         let most = match self.surface().rest {
-            RestSlope::AsFrictionHolds => {
-                self.surface().constant_friction().map(FrictionCone::coefficient).map(Angle::from_slope)
-            }
+            RestSlope::AsFrictionHolds => self.surface().constant_friction().map(FrictionCone::coefficient).map(Angle::from_slope),
             RestSlope::AtMost(angle) => Some(angle),
             RestSlope::Unlimited => None,
         };

@@ -109,7 +109,8 @@ pub fn grow_roadmap(
     let mut roadmap = Roadmap::new();
     roadmap.extend(ground, ends.into(), progress)?;
     let route = roadmap.route(ground, numbers, question)?;
-    let mut grown = GrownRoadmap { roadmap, ends: numbers, route, history: Vec::new(), end: RoadmapEnd::Exhausted, drawn: sampler.drawn() };
+    let mut grown =
+        GrownRoadmap { roadmap, ends: numbers, route, history: Vec::new(), end: RoadmapEnd::Exhausted, drawn: sampler.drawn() };
     grown.record();
     let gains = Gains { least: least_amounts(ground), points };
     let (mut weak_rounds, mut rounds) = (0, 0_u32);
@@ -208,9 +209,10 @@ impl Gains {
         };
         let through = over(&self.points[0], point).then(&over(point, &self.points[1]));
         let amounts = question.objective.amounts().iter();
-        amounts.map(|amount| (through.of(*amount), path.totals.of(*amount))).find(|(least, known)| least != known).is_some_and(
-            |(least, known)| least < known,
-        )
+        amounts
+            .map(|amount| (through.of(*amount), path.totals.of(*amount)))
+            .find(|(least, known)| least != known)
+            .is_some_and(|(least, known)| least < known)
     }
 }
 

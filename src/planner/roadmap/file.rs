@@ -7,7 +7,10 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::Roadmap;
-use crate::{ground::MeshGround, quantity::{FacetId, SlopeInterval}};
+use crate::{
+    ground::MeshGround,
+    quantity::{FacetId, SlopeInterval},
+};
 
 /// The kind and version of the file.
 const SCHEMA: &str = "chta/roadmap/1";

@@ -110,12 +110,7 @@ impl<'g> ContactSampler<'g> {
     ///
     /// # Errors
     /// [`NothingWithin`].
-    pub fn new(
-        ground: &'g MeshGround,
-        bounds: Option<SpaceBounds>,
-        stand_off_m: f64,
-        seed: u64,
-    ) -> Result<Self, NothingWithin> {
+    pub fn new(ground: &'g MeshGround, bounds: Option<SpaceBounds>, stand_off_m: f64, seed: u64) -> Result<Self, NothingWithin> {
         let tree = ground.tree();
         let mut source = ChaCha8Rng::seed_from_u64(seed);
         let (mut facets, mut areas_m2, mut sum_m2) = (Vec::new(), Vec::new(), 0.0);
@@ -238,7 +233,9 @@ impl<'g> ContactSampler<'g> {
         }
         match self.ground.contact(*point) {
             Ok(contact) => self.ground.stood_off(&contact, self.stand_off_m).map_or(Outcome::Buried, Outcome::Contact),
-            Err(NoMeshContact::InsideRock { .. } | NoMeshContact::Covered { .. } | NoMeshContact::NoPoint { .. }) => Outcome::Buried,
+            Err(NoMeshContact::InsideRock { .. } | NoMeshContact::Covered { .. } | NoMeshContact::NoPoint { .. }) => {
+                Outcome::Buried
+            }
         }
     }
 
