@@ -45,6 +45,7 @@ mod map_world;
 mod margins;
 mod mended;
 mod mesh_flight;
+mod mesh_routes;
 mod mesh_slices;
 mod mesh_verified;
 mod mesh_windows;
