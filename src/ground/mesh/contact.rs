@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 
-use super::MeshGround;
+use super::{MeshGround, hold::Hold};
 use crate::quantity::FacetId;
 
 /// A facet at a contact.
@@ -12,6 +12,8 @@ pub struct MeshContactFacet {
     pub id: FacetId,
     /// Its normal, of length 1.
     pub normal: Vector3<f64>,
+    /// What holds a take-off and a landing on it.
+    pub(super) holds: [Hold; 2],
 }
 
 /// A point of the surface of a mesh where a hop takes off or lands.
@@ -111,7 +113,10 @@ impl MeshGround {
         let facets: Vec<MeshContactFacet> = tree
             .touching(nearest.point)
             .into_iter()
-            .map(|id| MeshContactFacet { id, normal: tree.normal(id).into_inner() })
+            .map(|id| {
+                let normal = tree.normal(id).into_inner();
+                MeshContactFacet { id, normal, holds: self.holds(normal) }
+            })
             .collect();
         let mean: Vector3<f64> = facets.iter().map(|facet| facet.normal).sum();
         if let Some(outwards) = mean.try_normalize(1.0e-6)

@@ -16,6 +16,7 @@
 
 mod blocked;
 mod contact;
+mod hold;
 mod takeoff_set;
 
 pub use blocked::BlockedSpan;
@@ -27,11 +28,11 @@ use std::{ops::ControlFlow, sync::Arc};
 use nalgebra::Vector2;
 
 use crate::{
-    ballistics::{ContactLimits, FlightEnvelope, LineOfSight, limits::blocked_lofts},
-    chain::{ConstraintProblem, FacetGround, GroundRefusal, facet_constraints},
-    quantity::{Angle, AngleInterval, ChainPoint, FacetId, SlopeInterval},
+    ballistics::{FlightEnvelope, LineOfSight, limits::blocked_lofts},
+    chain::{ConstraintProblem, FacetGround, facet_constraints},
+    quantity::{ChainPoint, FacetId, SlopeInterval},
     terrain::{MeshTree, VerticalPlane},
-    world::{Contact, Direction, Gravity, Hopper, SurfaceProperties},
+    world::{Contact, Gravity, Hopper, SurfaceProperties},
 };
 use blocked::BlockedLofts;
 
@@ -89,7 +90,8 @@ impl MeshGround {
     /// The course from one contact to another; `None` where one is right over the other: a vertical hop has no plane.
     pub fn course(&self, takeoff: &MeshContact, landing: &MeshContact) -> Option<MeshCourse> {
         let away = landing.point_m() - takeoff.point_m();
-        let run_m = libm::hypot(away.x, away.y);
+        // Coordinates are far from where a square overflows, and shorter runs than a square resolves are no hops.
+        let run_m = (away.x * away.x + away.y * away.y).sqrt();
         if run_m <= self.tree.resolution_m() {
             return None;
         }
@@ -101,35 +103,6 @@ impl MeshGround {
             None => LineOfSight::new(run_m, away.z),
         };
         Some(MeshCourse { plane: VerticalPlane { origin: takeoff.point_m(), heading }, sight })
-    }
-
-    /// What the facets at a contact allow for a direction of travel: the strictest of each limit.
-    ///
-    /// # Errors
-    /// Why they refuse every hop, and the facet that does.
-    pub fn allowed(
-        &self,
-        contact: &MeshContact,
-        heading: Vector2<f64>,
-        kind: Contact,
-    ) -> Result<ContactLimits, (GroundRefusal, FacetId)> {
-        let mut least = ContactLimits { slopes: SlopeInterval::ALL, speed_max_m_s: f64::INFINITY };
-        let mut last = FacetId(0);
-        for facet in contact.facets() {
-            last = facet.id;
-            let (hopper, gravity) = (self.envelope.hopper(), self.envelope.gravity());
-            let constraints = facet_constraints(facet.normal, heading, FacetGround::default(), hopper, gravity, &self.surface)
-                .map_err(|_| (GroundRefusal::NoGround, facet.id))?;
-            let rule = constraints.check_contact(kind, Direction::Forward).map_err(|refusal| (refusal, facet.id))?;
-            least.slopes = least.slopes.intersect(rule.slopes());
-            least.speed_max_m_s = least.speed_max_m_s.min(rule.speed_max_m_s());
-        }
-        if least.slopes.is_empty() {
-            let [min, max] = [least.slopes.lower, least.slopes.upper].map(Angle::from_slope);
-            let angles = AngleInterval { min, max };
-            return Err((GroundRefusal::FacetsDisagree { angles }, last));
-        }
-        Ok(least)
     }
 
     /// The feasible windows of one hop, as lofts over its line of sight, ascending and disjoint; none if no arc is feasible, and `None`
@@ -146,9 +119,8 @@ impl MeshGround {
         let MeshBuffers { blocked, free } = buffers;
         free.clear();
         let heading = course.plane.heading;
-        let (Ok(from), Ok(to)) =
-            (self.allowed(takeoff, heading, Contact::Takeoff), self.allowed(landing, heading, Contact::Landing))
-        else {
+        let from = self.limits(takeoff, heading, Contact::Takeoff);
+        let Some((from, to)) = from.and_then(|from| Some((from, self.limits(landing, heading, Contact::Landing)?))) else {
             return Some((course.sight, &[]));
         };
         let lofts = self.envelope.lofts(course.sight, from, to);
