@@ -55,8 +55,8 @@ pub use map_answer::{
     StartRecord,
 };
 pub use mesh_hop_answer::{
-    MeshBindingRecord, MeshBlockedRecord, MeshContactRecord, MeshFacetRecord, MeshHopAnswer, MeshLimitRecord, MeshWindowEndRecord,
-    MeshWindowRecord, mesh_hop_text,
+    MeshBallRecord, MeshBindingRecord, MeshBlockedRecord, MeshContactRecord, MeshFacetRecord, MeshHopAnswer, MeshLimitRecord,
+    MeshWindowEndRecord, MeshWindowRecord, mesh_hop_text,
 };
 pub use objective_record::{AmountRecord, BudgetRecord, ObjectiveRecord};
 pub use path_record::{

@@ -35,6 +35,7 @@ mod journey;
 mod journey_path;
 pub mod map;
 mod measured;
+mod mesh_flaws;
 mod mesh_hop;
 mod nodes;
 mod objective;

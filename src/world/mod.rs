@@ -2,6 +2,7 @@
 
 mod body;
 mod derating;
+mod face_group;
 mod friction_cone;
 mod gravity;
 mod hopper;
@@ -16,6 +17,7 @@ mod travel;
 
 pub use body::{Body, KNOWN_BODIES};
 pub use derating::Derating;
+pub use face_group::{FaceGroup, FaceGroups};
 pub use friction_cone::{FrictionCone, InvalidFriction};
 pub use gravity::{Gravity, InvalidGravity, InvalidRadius};
 pub use hopper::{ClearanceRule, Hopper, HopperLimits, HopperProblem, InvalidHopper};

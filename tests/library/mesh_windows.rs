@@ -19,13 +19,13 @@ use crate::support::Draw;
 
 /// Corners and triangles under construction.
 #[derive(Clone, Default)]
-struct Shape {
-    corners: Vec<Point3<f64>>,
-    triangles: Vec<[u32; 3]>,
+pub(super) struct Shape {
+    pub(super) corners: Vec<Point3<f64>>,
+    pub(super) triangles: Vec<[u32; 3]>,
 }
 
 impl Shape {
-    fn polygon(&mut self, corners: &[[f64; 3]]) {
+    pub(super) fn polygon(&mut self, corners: &[[f64; 3]]) {
         let first = u32::try_from(self.corners.len()).unwrap();
         self.corners.extend(corners.iter().map(|corner| Point3::from(*corner)));
         let count = u32::try_from(corners.len()).unwrap();
@@ -33,7 +33,7 @@ impl Shape {
     }
 
     /// A closed box, turned about its middle, its outer sides outwards; walls thinner than nothing are turned inside out.
-    fn cuboid(&mut self, middle: Point3<f64>, half: Vector3<f64>, turn: Rotation3<f64>) {
+    pub(super) fn cuboid(&mut self, middle: Point3<f64>, half: Vector3<f64>, turn: Rotation3<f64>) {
         let first = u32::try_from(self.corners.len()).unwrap();
         for i in 0..8 {
             let sign = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
@@ -63,13 +63,13 @@ impl Shape {
         }
     }
 
-    fn mesh(self) -> Mesh {
+    pub(super) fn mesh(self) -> Mesh {
         Mesh::new(self.corners, self.triangles).unwrap()
     }
 }
 
 /// A random scene: rough ground, boxes that overlap, plates, sometimes a ceiling over all.
-fn scene(draw: &mut Draw) -> Shape {
+pub(super) fn scene(draw: &mut Draw) -> Shape {
     let mut shape = Shape::default();
     let (cells, rough_m) = (2 + u32::try_from(draw.below(9)).unwrap(), draw.log_uniform(0.01, 3.0));
     shape.sheet(draw, cells, 10.0, [-rough_m, rough_m], true);
@@ -95,11 +95,11 @@ fn scene(draw: &mut Draw) -> Shape {
     shape
 }
 
-fn surface(friction: f64) -> SurfaceProperties {
+pub(super) fn surface(friction: f64) -> SurfaceProperties {
     SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(friction).unwrap())), rest: RestSlope::Unlimited }
 }
 
-fn ground(mesh: Mesh, limits: HopperLimits, gravity_m_s2: f64, surface: &SurfaceProperties) -> MeshGround {
+pub(super) fn ground(mesh: Mesh, limits: HopperLimits, gravity_m_s2: f64, surface: &SurfaceProperties) -> MeshGround {
     let hopper = Hopper::new(limits).unwrap();
     MeshGround::new(MeshTree::new(mesh), &hopper, Gravity::new(gravity_m_s2).unwrap(), surface).unwrap()
 }
@@ -165,7 +165,7 @@ fn flown(ground: &MeshGround, from: &MeshContact, to: &MeshContact, arc: &Arc, g
 }
 
 /// The contact of a random point, if it has one.
-fn contact(ground: &MeshGround, draw: &mut Draw) -> Option<MeshContact> {
+pub(super) fn contact(ground: &MeshGround, draw: &mut Draw) -> Option<MeshContact> {
     let at = Point3::new(draw.uniform(-8.0, 8.0), draw.uniform(-8.0, 8.0), draw.uniform(-2.0, 7.0));
     ground.contact(at).ok()
 }
@@ -288,7 +288,7 @@ fn windows_keep_the_clearance_over_and_under_all_facets() {
 }
 
 /// The interval of lofts that all limits but the terrain leave.
-fn limits_but_terrain(set: &MeshTakeoffSet) -> Result<([f64; 2], usize), ()> {
+pub(super) fn limits_but_terrain(set: &MeshTakeoffSet) -> Result<([f64; 2], usize), ()> {
     let mut all = [0.0_f64, f64::INFINITY];
     for limit in set.limits() {
         all = [all[0].max(limit.lofts.lower), all[1].min(limit.lofts.upper)];
@@ -380,7 +380,7 @@ fn a_mesh_that_is_a_triangulated_dem_has_the_windows_of_the_dem() {
 }
 
 /// A flat floor and whatever stands on it.
-fn on_a_floor(build: impl FnOnce(&mut Shape)) -> Shape {
+pub(super) fn on_a_floor(build: impl FnOnce(&mut Shape)) -> Shape {
     let mut shape = Shape::default();
     shape.polygon(&[[-5.0, -5.0, 0.0], [15.0, -5.0, 0.0], [15.0, 5.0, 0.0], [-5.0, 5.0, 0.0]]);
     build(&mut shape);
@@ -388,14 +388,14 @@ fn on_a_floor(build: impl FnOnce(&mut Shape)) -> Shape {
 }
 
 /// The set between the points at x = 0 and 10 m of the floor, with a friction and speeds that leave nearly everything.
-fn across(shape: Shape, clearance_m: f64) -> MeshTakeoffSet {
+pub(super) fn across(shape: Shape, clearance_m: f64) -> MeshTakeoffSet {
     let limits = HopperLimits { clearance_m, ..HopperLimits::with_speeds(1e3, 1e3) };
     let ground = ground(shape.mesh(), limits, 9.81, &surface(100.0));
     let [from, to] = [0.0, 10.0].map(|x| ground.contact(Point3::new(x, 0.3, 0.0)).unwrap());
     ground.takeoff_set(&from, &to).unwrap()
 }
 
-fn ends(set: &MeshTakeoffSet) -> Vec<[f64; 2]> {
+pub(super) fn ends(set: &MeshTakeoffSet) -> Vec<[f64; 2]> {
     set.windows().iter().map(|window| [window.lofts.lower, window.lofts.upper]).collect()
 }
 

@@ -20,6 +20,8 @@ pub struct MeshContactFacet {
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshContact {
     point_m: Point3<f64>,
+    /// Of a ball, the place of its centre; else the point.
+    centre_m: Point3<f64>,
     moved_m: f64,
     /// All facets that meet at the point.
     facets: Vec<MeshContactFacet>,
@@ -54,6 +56,22 @@ pub enum NoMeshContact {
         /// The nearest point of the surface.
         nearest_m: Point3<f64>,
     },
+    /// The ball of the hopper has no room there.
+    #[error(
+        "a ball of radius {radius_m} m on the surface at ({}, {}, {}) m touches facet {}, {distance_m:.6} m from its centre, expected room \
+         for it: choose a place farther away from walls and edges, or a smaller hopper.radius_m",
+        point_m.x, point_m.y, point_m.z, facet.index() + 1
+    )]
+    NoRoom {
+        /// The point of the surface.
+        point_m: Point3<f64>,
+        /// The radius of the ball, m.
+        radius_m: f64,
+        /// What it touches.
+        facet: FacetId,
+        /// How far that is from the centre of the ball, m.
+        distance_m: f64,
+    },
     /// Not three finite numbers.
     #[error("({}, {}, {}) is no point, expected three finite numbers", point_m.x, point_m.y, point_m.z)]
     NoPoint {
@@ -69,6 +87,11 @@ impl MeshContact {
     /// The point, m.
     pub const fn point_m(&self) -> Point3<f64> {
         self.point_m
+    }
+
+    /// Where the centre of the hopper is, m: [`BALL_STAND_OFF`](super::BALL_STAND_OFF) radii off a ball's point, along the mean of the normals there.
+    pub const fn centre_m(&self) -> Point3<f64> {
+        self.centre_m
     }
 
     /// How far the point was moved to the surface, m.
@@ -97,7 +120,7 @@ impl MeshGround {
     /// The contact at the point of the surface that is nearest to a given one.
     ///
     /// # Errors
-    /// [`NoMeshContact`] for a point inside rock, and for surface that is.
+    /// [`NoMeshContact`] for a point inside rock, for surface that is, and where a ball has no room.
     pub fn contact(&self, at: Point3<f64>) -> Result<MeshContact, NoMeshContact> {
         if !at.coords.iter().all(|coordinate| coordinate.is_finite()) {
             return Err(NoMeshContact::NoPoint { point_m: at });
@@ -115,7 +138,7 @@ impl MeshGround {
             .into_iter()
             .map(|id| {
                 let normal = tree.normal(id).into_inner();
-                MeshContactFacet { id, normal, holds: self.holds(normal) }
+                MeshContactFacet { id, normal, holds: self.holds(id, normal) }
             })
             .collect();
         let mean: Vector3<f64> = facets.iter().map(|facet| facet.normal).sum();
@@ -124,6 +147,7 @@ impl MeshGround {
         {
             return Err(NoMeshContact::Covered { point_m: at, nearest_m: nearest.point });
         }
-        Ok(MeshContact { point_m: nearest.point, moved_m: nearest.distance_m, facets })
+        let centre_m = self.centre(nearest.point, mean, &facets)?;
+        Ok(MeshContact { point_m: nearest.point, centre_m, moved_m: nearest.distance_m, facets })
     }
 }

@@ -5,9 +5,9 @@ use nalgebra::{Vector2, Vector3};
 use super::{MeshContact, MeshGround};
 use crate::{
     ballistics::ContactLimits,
-    chain::{FacetGround, GroundRefusal, SegmentConstraints, facet_constraints},
+    chain::{GroundRefusal, SegmentConstraints, facet_constraints},
     quantity::{Angle, AngleInterval, FacetId, SlopeInterval},
-    world::{Contact, Direction, Grip, PreparedCone},
+    world::{Contact, Direction, PreparedCone},
 };
 
 /// What a facet allows a take-off or a landing, for every direction of travel.
@@ -45,12 +45,10 @@ impl Hold {
 
 impl MeshGround {
     /// What holds a take-off and a landing on a facet of this normal.
-    pub(super) fn holds(&self, normal: Vector3<f64>) -> [Hold; 2] {
-        let Some(constraints) = self.constraints(normal, steepest(normal)) else { return [Hold::Refused; 2] };
-        let friction = match self.surface.grip {
-            Some(Grip::Friction(cone)) => cone,
-            Some(Grip::FromSlope { .. }) | None => return [Hold::Stated; 2],
-        };
+    pub(super) fn holds(&self, id: FacetId, normal: Vector3<f64>) -> [Hold; 2] {
+        let Some(constraints) = self.constraints(id, normal, steepest(normal)) else { return [Hold::Refused; 2] };
+        let face = self.face_surface(id);
+        let Some(friction) = face.ground.friction.or(face.surface.constant_friction()) else { return [Hold::Stated; 2] };
         let brakes = self.envelope.hopper().limits().landing.brakes();
         [Contact::Takeoff, Contact::Landing].map(|kind| {
             let stated = constraints.stated(Direction::Forward).map(|line| line.contact(kind).speed_max_m_s());
@@ -70,9 +68,9 @@ impl MeshGround {
     }
 
     /// The constraints of a facet for one direction of travel; `None` where it states no grip.
-    fn constraints(&self, normal: Vector3<f64>, heading: Vector2<f64>) -> Option<SegmentConstraints> {
-        let (hopper, gravity) = (self.envelope.hopper(), self.envelope.gravity());
-        facet_constraints(normal, heading, FacetGround::default(), hopper, gravity, &self.surface).ok()
+    fn constraints(&self, id: FacetId, normal: Vector3<f64>, heading: Vector2<f64>) -> Option<SegmentConstraints> {
+        let (hopper, gravity, face) = (self.envelope.hopper(), self.envelope.gravity(), self.face_surface(id));
+        facet_constraints(normal, heading, face.ground, hopper, gravity, &face.surface).ok()
     }
 
     /// What the facets at a contact allow for a direction of travel, the strictest of each limit; `None` if they refuse every hop. This
@@ -84,7 +82,7 @@ impl MeshGround {
             let hold = &facet.holds[kind as usize];
             let limits = match hold.limits(facet.normal, heading, kind) {
                 Some(limits) => limits,
-                None => self.constraints(facet.normal, heading)?.allowed(kind, Direction::Forward)?.contact_limits(),
+                None => self.constraints(facet.id, facet.normal, heading)?.allowed(kind, Direction::Forward)?.contact_limits(),
             };
             least.slopes = least.slopes.intersect(limits.slopes);
             least.speed_max_m_s = least.speed_max_m_s.min(limits.speed_max_m_s);
@@ -114,7 +112,7 @@ impl MeshGround {
             let hold = &facet.holds[kind as usize];
             // What does not depend on the heading was decided along the steepest direction.
             let along = if *hold == Hold::Refused { steepest(facet.normal) } else { heading };
-            let Some(constraints) = self.constraints(facet.normal, along) else {
+            let Some(constraints) = self.constraints(facet.id, facet.normal, along) else {
                 return (GroundRefusal::NoGround, facet.id);
             };
             let rule = match constraints.check_contact(kind, Direction::Forward) {
@@ -142,8 +140,9 @@ fn steepest(normal: Vector3<f64>) -> Vector2<f64> {
 mod tests {
     use super::*;
     use crate::{
+        chain::FacetGround,
         draw::Draw,
-        world::{FrictionCone, Gravity, Hopper, RestSlope, SurfaceProperties},
+        world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
     };
 
     /// A million facets of every inclination: the prepared cones against the constraints by angles.

@@ -14,13 +14,17 @@
 //! Source: Campana and Laumond 2016, *Ballistic motion planning*, who sample angles of the arcs and check them one by one; the windows
 //! are the closed form of what they sample.
 
+mod ball;
 mod blocked;
 mod contact;
+mod face_surfaces;
 mod hold;
 mod takeoff_set;
 
+pub use ball::BALL_STAND_OFF;
 pub use blocked::BlockedSpan;
 pub use contact::{MeshContact, MeshContactFacet, NoMeshContact};
+pub use face_surfaces::UnknownGroup;
 pub use takeoff_set::{MeshConflict, MeshTakeoffSet, MeshWindow, MeshWindowEnd};
 
 use std::{ops::ControlFlow, sync::Arc};
@@ -28,13 +32,17 @@ use std::{ops::ControlFlow, sync::Arc};
 use nalgebra::Vector2;
 
 use crate::{
-    ballistics::{FlightEnvelope, LineOfSight, limits::blocked_lofts},
+    ballistics::{
+        FlightEnvelope, LineOfSight,
+        limits::{blocked_lofts, blocked_lofts_of_ball},
+    },
     chain::{ConstraintProblem, FacetGround, facet_constraints},
     quantity::{ChainPoint, FacetId, SlopeInterval},
     terrain::{MeshTree, VerticalPlane},
-    world::{Contact, Gravity, Hopper, SurfaceProperties},
+    world::{Contact, Derating, FaceGroups, Gravity, Hopper, SurfaceProperties},
 };
 use blocked::BlockedLofts;
+use face_surfaces::{FaceSurface, surfaces};
 
 /// A mesh with the hopper, gravity and the surface: all that a hop between two of its points depends on. A clone shares the mesh.
 #[derive(Clone, Debug)]
@@ -42,6 +50,8 @@ pub struct MeshGround {
     tree: Arc<MeshTree>,
     envelope: FlightEnvelope,
     surface: SurfaceProperties,
+    /// Of every kind of face.
+    faces: Arc<[FaceSurface]>,
 }
 
 /// The course of a hop between two contacts of a mesh.
@@ -61,7 +71,8 @@ pub struct MeshBuffers {
 }
 
 impl MeshGround {
-    /// The ground of a mesh for a hopper and gravity.
+    /// The ground of a mesh for a hopper and gravity, with what its file states of its faces; for groups that a scenario names, see
+    /// [`with_groups`](Self::with_groups).
     ///
     /// # Errors
     /// [`ConstraintProblem`], where the surface states no grip, or the hopper no speeds.
@@ -74,7 +85,9 @@ impl MeshGround {
         surface.check()?;
         let level = nalgebra::Vector3::z();
         facet_constraints(level, Vector2::x(), FacetGround::default(), hopper, gravity, surface)?;
-        Ok(Self { tree: tree.into(), envelope: FlightEnvelope::new(hopper, gravity), surface: *surface })
+        let tree: Arc<MeshTree> = tree.into();
+        let faces = surfaces(tree.mesh().faces(), surface, &FaceGroups::new(), &Derating::NONE);
+        Ok(Self { tree, envelope: FlightEnvelope::new(hopper, gravity), surface: *surface, faces })
     }
 
     /// The mesh.
@@ -89,7 +102,7 @@ impl MeshGround {
 
     /// The course from one contact to another; `None` where one is right over the other: a vertical hop has no plane.
     pub fn course(&self, takeoff: &MeshContact, landing: &MeshContact) -> Option<MeshCourse> {
-        let away = landing.point_m() - takeoff.point_m();
+        let away = landing.centre_m() - takeoff.centre_m();
         // Coordinates are far from where a square overflows, and shorter runs than a square resolves are no hops.
         let run_m = (away.x * away.x + away.y * away.y).sqrt();
         if run_m <= self.tree.resolution_m() {
@@ -97,12 +110,14 @@ impl MeshGround {
         }
         let heading = away.xy() / run_m;
         // The slope of a facet has more digits than the difference of two heights on it.
-        let shared = takeoff.facets().iter().find(|facet| facet.normal.z > 0.0 && landing.touches(facet.id));
+        // (The centres of a ball that stands on edges are not over one facet.)
+        let alike = self.radius_m() == 0.0 || (takeoff.facets().len() == 1 && landing.facets().len() == 1);
+        let shared = takeoff.facets().iter().find(|facet| alike && facet.normal.z > 0.0 && landing.touches(facet.id));
         let sight = match shared {
             Some(facet) => LineOfSight::along(run_m, (-facet.normal.xy() / facet.normal.z).dot(&heading)),
             None => LineOfSight::new(run_m, away.z),
         };
-        Some(MeshCourse { plane: VerticalPlane { origin: takeoff.point_m(), heading }, sight })
+        Some(MeshCourse { plane: VerticalPlane { origin: takeoff.centre_m(), heading }, sight })
     }
 
     /// The feasible windows of one hop, as lofts over its line of sight, ascending and disjoint; none if no arc is feasible, and `None`
@@ -140,16 +155,21 @@ impl MeshGround {
     fn block(&self, course: &MeshCourse, ends: [&MeshContact; 2], within: SlopeInterval, blocked: &mut BlockedLofts) {
         blocked.clear();
         let shared = std::cell::RefCell::new(blocked);
-        let _ = self.tree.cut(
-            &course.plane,
-            |rectangle| self.may_block(course, rectangle, within, &shared.borrow()),
-            |facet, segment| {
-                let lofts = self.blocked_by(course, ends, facet, segment);
-                let mut blocked = shared.borrow_mut();
-                blocked.insert(lofts, facet);
-                if blocked.covers(within) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            },
-        );
+        let enters = |rectangle| self.may_block(course, rectangle, within, &shared.borrow());
+        let insert = |facet, lofts| {
+            let mut blocked = shared.borrow_mut();
+            blocked.insert(lofts, facet);
+            if blocked.covers(within) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let _ = match self.radius_m() {
+            0.0 => {
+                self.tree.cut(&course.plane, enters, |facet, segment| insert(facet, self.blocked_by(course, ends, facet, segment)))
+            }
+            radius_m => self.tree.slab(&course.plane, radius_m, enters, |facet, part| {
+                let clearance = self.envelope.clearance();
+                insert(facet, blocked_lofts_of_ball(course.sight, part.corners(), radius_m, clearance))
+            }),
+        };
     }
 
     /// The lofts that the part of a facet in the plane of a hop blocks.
