@@ -33,8 +33,8 @@ pub use height_field::HeightField;
 pub(crate) use hop_reach::HopReach;
 pub(crate) use landing_share::LandingScatter;
 pub use mesh::{
-    BlockedSpan, MeshBuffers, MeshConflict, MeshContact, MeshContactFacet, MeshCourse, MeshGround, MeshPosition, MeshTakeoffSet,
-    MeshWindow, MeshWindowEnd, NoMeshContact,
+    BALL_STAND_OFF, BlockedSpan, MeshBuffers, MeshConflict, MeshContact, MeshContactFacet, MeshCourse, MeshGround, MeshPosition,
+    MeshTakeoffSet, MeshWindow, MeshWindowEnd, NoMeshContact, UnknownGroup,
 };
 pub(crate) use posts::Offset;
 pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostHopsSize, PostRefusal};

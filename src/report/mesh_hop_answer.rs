@@ -9,11 +9,11 @@ use super::{
     text::{LimitLine, Sheet, choice_lines, limit_table, place},
 };
 use crate::{
-    ballistics::TakeoffChoice,
-    ground::{MeshConflict, MeshContact, MeshGround, MeshTakeoffSet, MeshWindow, MeshWindowEnd},
+    ballistics::{TakeoffChoice, limits::BALL_BOUND},
+    ground::{BALL_STAND_OFF, MeshConflict, MeshContact, MeshGround, MeshTakeoffSet, MeshWindow, MeshWindowEnd},
     hop::LimitInterval,
     path::heading_deg,
-    quantity::{FacetId, SlopeInterval},
+    quantity::{FacetId, SlopeInterval, format_number},
     world::{Contact, Limit},
 };
 
@@ -26,6 +26,9 @@ pub struct MeshHopAnswer {
     pub takeoff: MeshContactRecord,
     /// The landing, on the surface.
     pub landing: MeshContactRecord,
+    /// The ball that the hopper is in flight; absent for a point.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ball: Option<MeshBallRecord>,
     /// The heading, clockwise from +y.
     pub heading_deg: f64,
     /// Whether a single hop is feasible.
@@ -52,6 +55,21 @@ pub struct MeshHopAnswer {
     pub choices: Vec<BestRecord>,
 }
 
+/// The ball that a hopper is in flight. The windows are those of its centre.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MeshBallRecord {
+    /// Its radius: on no arc of the windows does the centre come nearer to the mesh.
+    pub radius_m: f64,
+    /// An arc may be left out of the windows where the centre comes nearer to the mesh than this.
+    pub refused_within_m: f64,
+    /// How far off the contacts the centre begins and ends.
+    pub stand_off_m: f64,
+    /// The centre at take-off, [x, y, z], m.
+    pub takeoff_centre_m: [f64; 3],
+    /// The centre at landing, [x, y, z], m.
+    pub landing_centre_m: [f64; 3],
+}
+
 /// A contact on a mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeshContactRecord {
@@ -63,6 +81,9 @@ pub struct MeshContactRecord {
     pub moved_m: f64,
     /// The facets that meet at the point; the strictest rules.
     pub facets: Vec<MeshFacetRecord>,
+    /// The names of the groups, objects and materials of these facets; absent where they have none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub groups: Vec<String>,
 }
 
 /// A facet of a mesh.
@@ -174,6 +195,7 @@ impl MeshHopAnswer {
             mesh_scale,
             takeoff,
             landing,
+            ball: MeshBallRecord::new(ground, contacts),
             heading_deg: heading_deg(contacts[0].point_m().xy(), contacts[1].point_m().xy()),
             feasible: angles.is_some(),
             takeoff_angle_min_deg: angles.map(|angles| angles.min.degrees()),
@@ -203,14 +225,32 @@ impl MeshHopAnswer {
     }
 }
 
+impl MeshBallRecord {
+    fn new(ground: &MeshGround, contacts: [&MeshContact; 2]) -> Option<Self> {
+        let radius_m = Some(ground.radius_m()).filter(|radius_m| *radius_m > 0.0)?;
+        let [takeoff_centre_m, landing_centre_m] = contacts.map(|contact| contact.point_m().coords.into());
+        Some(Self {
+            radius_m,
+            refused_within_m: BALL_BOUND * radius_m,
+            stand_off_m: BALL_STAND_OFF * radius_m,
+            takeoff_centre_m,
+            landing_centre_m,
+        })
+    }
+}
+
 impl MeshContactRecord {
     /// From a contact that was asked for at a point.
     pub fn new(ground: &MeshGround, contact: &MeshContact, given_m: [f64; 3]) -> Self {
         Self {
             given_m,
-            point_m: contact.point_m().coords.into(),
+            point_m: contact.surface_m().coords.into(),
             moved_m: contact.moved_m(),
             facets: contact.facets().iter().map(|facet| MeshFacetRecord::new(ground, facet.id)).collect(),
+            groups: {
+                let names = contact.facets().iter().flat_map(|facet| ground.names_of(facet.id));
+                names.cloned().collect::<std::collections::BTreeSet<_>>().into_iter().collect()
+            },
         }
     }
 }
@@ -287,8 +327,23 @@ pub fn mesh_hop_text(answer: &MeshHopAnswer) -> String {
             [one] => ("", one.number.to_string()),
             all => ("s", all.iter().map(|facet| facet.number.to_string()).collect::<Vec<_>>().join(", ")),
         };
-        sheet
-            .line(format_args!("{name} moved {:.6} m to the nearest point of the surface, on facet{s} {numbers}", contact.moved_m));
+        let groups = match contact.groups.as_slice() {
+            [] => String::new(),
+            names => format!(" ({})", names.join(", ")),
+        };
+        sheet.line(format_args!(
+            "{name} moved {:.6} m to the nearest point of the surface, on facet{s} {numbers}{groups}",
+            contact.moved_m
+        ));
+    }
+    if let Some(ball) = &answer.ball {
+        sheet.line(format_args!(
+            "a ball of radius {} m whose centre begins and ends {} m off the surface: no arc of the windows comes nearer to a facet than its \
+             radius; arcs that come nearer than {:.6} m may be left out",
+            format_number(ball.radius_m),
+            format_number(ball.stand_off_m),
+            ball.refused_within_m
+        ));
     }
     match answer.windows.as_slice() {
         [] => sheet.line(format_args!("not feasible in one hop")),

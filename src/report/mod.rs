@@ -56,8 +56,8 @@ pub use map_answer::{
     StartRecord,
 };
 pub use mesh_hop_answer::{
-    MeshBindingRecord, MeshBlockedRecord, MeshContactRecord, MeshFacetRecord, MeshHopAnswer, MeshLimitRecord, MeshWindowEndRecord,
-    MeshWindowRecord, mesh_hop_text,
+    MeshBallRecord, MeshBindingRecord, MeshBlockedRecord, MeshContactRecord, MeshFacetRecord, MeshHopAnswer, MeshLimitRecord,
+    MeshWindowEndRecord, MeshWindowRecord, mesh_hop_text,
 };
 pub(crate) use mesh_plan_answer::hops_of;
 pub use mesh_plan_answer::{MeshPlanAnswer, RoadmapGapRecord, RoadmapRecord, RoadmapRoundRecord, mesh_plan_text};

@@ -55,6 +55,8 @@ pub enum Kind {
     Speeds,
     /// A list of amounts of a path, the first to be least, the next to break its ties.
     Amounts,
+    /// Tables of groups of faces, by their names.
+    FaceGroups,
     /// Any text.
     Text,
 }
@@ -129,6 +131,11 @@ impl Kind {
                 Amount::ALL.map(Amount::name).join(", "),
                 Amount::PeakSpeed
             ),
+            Self::FaceGroups => {
+                "a table for each group of faces, with friction_coefficient (a number from 0 to 1e6), rest_slope_max_deg (an angle \
+                                 from 0 to 90 degrees, or inf) or keep_out (true or false), such as [surface.group.ice]"
+                    .to_owned()
+            }
             Self::Text => "a text in quotes, not empty".to_owned(),
         }
     }
@@ -175,7 +182,7 @@ const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 98] = [
+pub const CATALOGUE: [Key; 100] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -208,6 +215,12 @@ pub const CATALOGUE: [Key; 98] = [
     key("hopper", "takeoff_angle_step_deg", STEP_ANGLE, "take-off angles are multiples of this, degrees; absent: any angle"),
     key("hopper", "takeoff_speed_step_m_s", SPEED, "take-off speeds are multiples of this, m/s; absent: any speed"),
     key("hopper", "heading_step_deg", STEP_ANGLE, "headings from grid north are multiples of this, degrees; absent: any heading"),
+    key(
+        "hopper",
+        "radius_m",
+        FROM_ZERO,
+        "radius of the ball that the hopper is in flight, m, for hops over a mesh alone; absent or 0: a point",
+    ),
     key(
         "hopper",
         "footprint_m",
@@ -276,6 +289,12 @@ pub const CATALOGUE: [Key; 98] = [
         "keep_out",
         Kind::Text,
         "GeoJSON polygons or mask raster on the dem's map, path from this file: no take-off, no landing",
+    ),
+    key(
+        "surface",
+        "group",
+        Kind::FaceGroups,
+        "friction, rest slope and keep-out of groups, objects or materials of an OBJ, [surface.group.NAME]; for hops over a mesh alone",
     ),
     key(
         "contact",

@@ -8,7 +8,7 @@ use crate::{
     planner::SearchedCommands,
     quantity::AngleInterval,
     terrain::{MapPlace, NoDataRule},
-    world::{ClearanceRule, Grip, RestSlope},
+    world::{ClearanceRule, FaceGroup, Grip, RestSlope},
 };
 
 /// The scenario as used, defaults filled in, with the keys of [`CATALOGUE`](super::CATALOGUE):
@@ -91,6 +91,7 @@ fn hopper(scenario: &Scenario) -> Value {
         ("takeoff_angle_step_deg", hopper.limits().steps.takeoff_angle.map(|angle| angle.written_degrees().into())),
         ("takeoff_speed_step_m_s", hopper.limits().steps.takeoff_speed_m_s.map(Value::from)),
         ("heading_step_deg", hopper.limits().steps.heading.map(|angle| angle.written_degrees().into())),
+        ("radius_m", hopper.limits().radius_m.map(Value::from)),
         ("footprint_m", hopper.limits().footprint_m.map(Value::from)),
         ("roughness_max_m", hopper.limits().roughness_max_m.map(Value::from)),
         ("mass_kg", hopper.limits().mass_kg.map(Value::from)),
@@ -125,9 +126,27 @@ fn surface(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
                 RestSlope::Unlimited => Some("inf".into()),
             },
         ),
+        ("group", (!scenario.groups.is_empty()).then(|| scenario.groups.iter().map(face_group).collect::<Map<_, _>>().into())),
         ("friction_raster", scenario.friction_raster.as_deref().map(|path| named(path).into())),
         ("keep_out", scenario.keep_out.as_deref().map(|path| named(path).into())),
     ])
+}
+
+/// What is stated of a group of faces, by its name.
+fn face_group((name, group): (&String, &FaceGroup)) -> (String, Value) {
+    let rest = group.rest.and_then(|rest| match rest {
+        RestSlope::AtMost(angle) => Some(Value::from(angle.written_degrees())),
+        RestSlope::Unlimited => Some("inf".into()),
+        RestSlope::AsFrictionHolds => None,
+    });
+    // A group of which nothing is stated but that it is open has no other form.
+    let nothing = group.friction.is_none() && rest.is_none();
+    let stated = object([
+        ("friction_coefficient", group.friction.map(|cone| cone.coefficient().into())),
+        ("rest_slope_max_deg", rest),
+        ("keep_out", (group.keep_out || nothing).then(|| group.keep_out.into())),
+    ]);
+    (name.clone(), stated)
 }
 
 fn contact(scenario: &Scenario) -> Value {

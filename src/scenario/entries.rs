@@ -11,8 +11,9 @@ use super::{
 };
 use crate::{
     planner::{Amount, Objective},
+    quantity::Angle,
     terrain::NoDataRule,
-    world::SpeedLevels,
+    world::{FaceGroup, FaceGroups, FrictionCone, RestSlope, SpeedLevels},
 };
 
 /// The source of a value.
@@ -338,6 +339,11 @@ impl Entries {
         self.text("terrain", "mesh").is_some() && self.text("terrain", "route") == Some(super::Route::Free.name())
     }
 
+    /// Groups of faces; none if they were not given.
+    pub(super) fn face_groups(&self, table: &str, name: &str) -> FaceGroups {
+        self.value(table, name).and_then(face_groups).unwrap_or_default()
+    }
+
     /// Speeds; `None` if they were not given.
     pub(super) fn speeds(&self, table: &str, name: &str) -> Option<SpeedLevels> {
         self.value(table, name).and_then(speeds)
@@ -467,7 +473,10 @@ fn from_json(value: &serde_json::Value) -> Option<toml::Value> {
         }
         serde_json::Value::Array(items) => items.iter().map(from_json).collect::<Option<_>>().map(toml::Value::Array),
         serde_json::Value::Bool(boolean) => Some(toml::Value::Boolean(*boolean)),
-        serde_json::Value::Null | serde_json::Value::Object(_) => None,
+        serde_json::Value::Object(keys) => {
+            keys.iter().map(|(name, value)| Some((name.clone(), from_json(value)?))).collect::<Option<_>>().map(toml::Value::Table)
+        }
+        serde_json::Value::Null => None,
     }
 }
 
@@ -488,7 +497,11 @@ fn plain(value: &DeValue<'_>) -> Option<toml::Value> {
         DeValue::Float(float) => toml::Value::Float(float.as_str().parse().ok()?),
         DeValue::Boolean(boolean) => toml::Value::Boolean(*boolean),
         DeValue::Array(items) => toml::Value::Array(items.iter().map(|item| plain(item.get_ref())).collect::<Option<_>>()?),
-        DeValue::Datetime(_) | DeValue::Table(_) => return None,
+        DeValue::Table(keys) => {
+            let plain = keys.iter().map(|(name, value)| Some((name.get_ref().to_string(), plain(value.get_ref())?)));
+            toml::Value::Table(plain.collect::<Option<_>>()?)
+        }
+        DeValue::Datetime(_) => return None,
     })
 }
 
@@ -558,6 +571,32 @@ fn is_coordinate(number: f64) -> bool {
     number.abs() <= 1e12
 }
 
+/// Groups of faces; `None` if a key of one is unknown, or has no value that it takes.
+pub(super) fn face_groups(value: &toml::Value) -> Option<FaceGroups> {
+    let groups = value.as_table().filter(|groups| !groups.is_empty())?;
+    let group = |value: &toml::Value| {
+        let keys = value.as_table().filter(|keys| !keys.is_empty())?;
+        let mut group = FaceGroup::default();
+        for (name, value) in keys {
+            match name.as_str() {
+                "friction_coefficient" => {
+                    let friction = number(value).filter(|friction| (0.0..=1e6).contains(friction))?;
+                    group.friction = Some(FrictionCone::new(friction).ok()?);
+                }
+                "rest_slope_max_deg" if fits(value, Kind::AngleOrUnlimited) => {
+                    let angle = number(value).filter(|degrees| degrees.is_finite());
+                    group.rest =
+                        Some(angle.map_or(RestSlope::Unlimited, |degrees| RestSlope::AtMost(Angle::from_degrees(degrees))));
+                }
+                "keep_out" => group.keep_out = value.as_bool()?,
+                _ => return None,
+            }
+        }
+        Some(group)
+    };
+    groups.iter().map(|(name, value)| Some((name.clone(), group(value)?))).collect()
+}
+
 /// Whether a value is of a kind.
 pub(crate) fn fits(value: &toml::Value, kind: Kind) -> bool {
     match kind {
@@ -581,6 +620,7 @@ pub(crate) fn fits(value: &toml::Value, kind: Kind) -> bool {
         Kind::Word(words) => value.as_str().is_some_and(|word| words.contains(&word)),
         Kind::Speeds => speeds(value).is_some(),
         Kind::Amounts => objective(value).is_some(),
+        Kind::FaceGroups => face_groups(value).is_some(),
         Kind::Text => value.as_str().is_some_and(|text| !text.trim().is_empty()),
     }
 }

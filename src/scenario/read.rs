@@ -15,7 +15,7 @@ use crate::{
     quantity::{Angle, AngleInterval},
     terrain::{MapPlace, NoDataRule},
     world::{
-        Body, ClearanceRule, CommandSteps, Derating, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper,
+        Body, ClearanceRule, CommandSteps, Derating, FaceGroups, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper,
         KNOWN_BODIES, RestSlope, SurfaceProperties,
     },
 };
@@ -50,6 +50,8 @@ pub struct Scenario {
     pub hopper: Hopper,
     /// The ground's grip.
     pub surface: SurfaceProperties,
+    /// What groups of faces of a mesh have of their own.
+    pub groups: FaceGroups,
     /// Path of the raster of friction coefficients, relative to the scenario's folder.
     pub friction_raster: Option<PathBuf>,
     /// Path of the keep-out zones, relative to the scenario's folder.
@@ -140,6 +142,7 @@ impl Scenario {
             body,
             hopper,
             surface,
+            groups: entries.face_groups("surface", "group"),
             friction_raster,
             keep_out,
             terrain,
@@ -271,6 +274,7 @@ fn hopper(entries: &mut Entries) -> Hopper {
             takeoff_speed_m_s: number("takeoff_speed_step_m_s"),
             heading: number("heading_step_deg").map(Angle::from_degrees),
         },
+        radius_m: number("radius_m"),
         footprint_m: number("footprint_m"),
         roughness_max_m: number("roughness_max_m"),
         mass_kg: number("mass_kg"),

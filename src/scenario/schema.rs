@@ -64,6 +64,13 @@ fn of_kind(kind: Kind) -> Value {
             let names = Amount::ALL.map(Amount::name);
             json!({ "type": "array", "items": { "enum": names }, "minItems": 1, "maxItems": Objective::MOST, "uniqueItems": true })
         }
+        Kind::FaceGroups => {
+            let of_group = json!({
+                "friction_coefficient": number(0.0, 1e6), "rest_slope_max_deg": of_kind(Kind::AngleOrUnlimited), "keep_out": of_kind(Kind::Flag),
+            });
+            let group = json!({ "type": "object", "properties": of_group, "additionalProperties": false, "minProperties": 1 });
+            json!({ "type": "object", "additionalProperties": group, "minProperties": 1 })
+        }
         Kind::Text => json!({ "type": "string", "pattern": "\\S" }),
     }
 }

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::Point3;
 
-use super::{Extent, Extremes, TooLarge, constant_gravity_warnings, physics::check_extent};
+use super::{Extent, Extremes, TooLarge, constant_gravity_warnings, mesh_flaws::flaw_warnings, physics::check_extent};
 #[cfg(feature = "plot")]
 use super::{captions::title, conditions};
 use crate::{
     chain::ConstraintProblem,
-    ground::{MeshContact, MeshGround, MeshTakeoffSet, NoMeshContact},
+    ground::{MeshContact, MeshGround, MeshTakeoffSet, NoMeshContact, UnknownGroup},
     quantity::format_number,
     report::{DeratingRecord, MeshHopAnswer},
     scenario::Scenario,
@@ -59,6 +59,9 @@ pub enum MeshHopError {
         /// What it is for.
         what: &'static str,
     },
+    /// A group of faces that the mesh does not have.
+    #[error(transparent)]
+    Group(#[from] UnknownGroup),
     /// The surface states no grip, or the hopper no speeds.
     #[error(transparent)]
     Constraints(#[from] ConstraintProblem),
@@ -181,11 +184,12 @@ pub(super) fn mesh_ground(scenario: &Scenario, file: &Path, scale: f64) -> Resul
     let too_large = |problem| MeshHopError::TooLarge { file: file.to_path_buf(), problem };
     warnings.extend(check_extent(&scenario.body, &Extent::of_mesh(&read.mesh.bounds())).map_err(too_large)?);
     let tree = MeshTree::new(read.mesh);
-    warnings.extend(inside_out(&tree));
+    warnings.extend(flaw_warnings(&tree));
     let planned = scenario.derated();
     let planned = planned.as_ref().unwrap_or(scenario);
     let hopper = planned.hopper.with_any_command();
-    Ok((MeshGround::new(tree, &hopper, scenario.body.gravity, &planned.surface)?, warnings))
+    let ground = MeshGround::new(tree, &hopper, scenario.body.gravity, &planned.surface)?;
+    Ok((ground.with_groups(&scenario.groups, &scenario.derating)?, warnings))
 }
 
 /// Refuses the keys that restrict contacts by a map.
@@ -199,15 +203,4 @@ pub(super) fn check_keys(scenario: &Scenario) -> Result<(), MeshHopError> {
         Some((key, what, _)) => Err(MeshHopError::NotOnAMesh { key, what }),
         None => Ok(()),
     }
-}
-
-/// A warning about bodies whose outer sides point inwards: nothing stands on them.
-fn inside_out(tree: &MeshTree) -> Option<String> {
-    let [_, closed, inverted] = tree.body_counts();
-    (inverted > 0).then(|| {
-        format!(
-            "{inverted} of {closed} closed bodies of the mesh are inside out (the corners of their triangles run clockwise seen from outside): \
-             contacts on them face inwards; turn them round in the modeller"
-        )
-    })
 }

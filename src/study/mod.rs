@@ -37,6 +37,7 @@ mod journey;
 mod journey_path;
 pub mod map;
 mod measured;
+mod mesh_flaws;
 mod mesh_hop;
 mod mesh_route;
 mod nodes;

@@ -78,12 +78,22 @@ pub fn on_body<T: OfBody>(body: &BodyChoice, read: Result<T, TerrainError>) -> R
 /// # Errors
 /// As [`on_body`].
 pub fn dem_on_body(scenario: &Scenario, path: &Path) -> Result<(Dem, Vec<String>), PipelineError> {
+    refuse_mesh_keys(scenario)?;
     let (dem, of_extent) = on_body(&scenario.body, DemReading::of(scenario).options.read(path))?;
     let mut warnings = dem.warnings();
     warnings.extend(dem.georeference().doubts());
     warnings.extend(contradictions(scenario, None));
     warnings.extend(of_extent);
     Ok((dem, warnings))
+}
+
+/// Refuses the keys that only hops over a mesh obey: a ball, where others keep a clearance, and groups of faces.
+pub(super) fn refuse_mesh_keys(scenario: &Scenario) -> Result<(), PipelineError> {
+    match scenario.hopper.limits().radius_m {
+        Some(radius_m) if radius_m > 0.0 => Err(PipelineError::BallOffMesh { radius_m }),
+        _ if !scenario.groups.is_empty() => Err(PipelineError::GroupsOffMesh),
+        _ => Ok(()),
+    }
 }
 
 /// Warnings where a scenario contradicts itself about its body: gravity and radius, and speeds above escape, those of the chain's

@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 
 use super::{
     footprint::{SlicedDem, coarse_dem_warning},
-    on_body::{contradictions, on_body},
+    on_body::{contradictions, on_body, refuse_mesh_keys},
     physics::{Extent, TooLarge},
 };
 use crate::{
@@ -127,6 +127,21 @@ pub enum PipelineError {
     /// A terrain that is larger than the body it is said to lie on.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
+    /// A ball over a terrain that is no mesh of hops in space.
+    #[error(
+        "found hopper.radius_m of {radius_m} m, the radius of a ball over a mesh, expected a scenario without it over a DEM, a chain or a \
+         slice, where clearance_m keeps the hopper off the ground: remove it, or give clearance_m"
+    )]
+    BallOffMesh {
+        /// The radius, m.
+        radius_m: f64,
+    },
+    /// Groups of faces where the terrain has none.
+    #[error(
+        "found surface.group, the surfaces of groups of faces of a mesh, expected a scenario without it over a DEM, a chain or a slice: \
+         remove it, or give surface.friction_raster or a column of the chain"
+    )]
+    GroupsOffMesh,
     /// Measured errors that contradict the deviations beside them.
     #[error("{}", measured_problems(path, problems))]
     Measured {
@@ -189,6 +204,7 @@ impl Survey {
     /// [`PipelineError`].
     pub fn of(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Self, PipelineError> {
         let body = &scenario.body;
+        refuse_mesh_keys(scenario)?;
         let (transect, of_extent) = match source {
             TerrainSource::Dem { path, start, goal } => {
                 let read = Transect::of_dem(&base.join(path), [start, goal], &scenario.via, DemReading::of(scenario));

@@ -60,8 +60,9 @@ pub use georeference::{CoordinateSystem, DegreesMend, GeoReference, MapBounds, T
 pub use geotiff::{Band, ResultBands, geotiff_bytes, read_geotiff_bytes, result_geotiff_bytes, write_geotiff};
 pub use lattice::PostLattice;
 pub use mesh::{
-    Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, MeshTree, NearestOnMesh, VerticalPlane, WALL_RUN_M, Wall,
-    looks_like_mesh, read_mesh, read_mesh_bytes, read_mesh_with, slice_mesh,
+    FaceKind, FaceKinds, Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshFlaws, MeshFormatWritten, MeshSlice, MeshTree,
+    NearestOnMesh, SlabPolygon, VerticalPlane, WALL_RUN_M, Wall, looks_like_mesh, mesh_bytes, read_mesh, read_mesh_bytes,
+    read_mesh_with, slice_mesh,
 };
 pub(crate) use mesh::{binary_stl_length, format_name as mesh_format};
 pub use no_data::{InvalidNoData, NoData, NoDataRule};
@@ -76,7 +77,7 @@ pub use shell_word::shell_word;
 pub use sidecar::sidecar_files;
 pub use slice::{slice, slice_file, slice_legs};
 pub use surroundings::Surroundings;
-pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};
+pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticMesh, SyntheticTerrain, synthesise, synthesise_mesh};
 pub(crate) use text_lines::without_mark;
 pub(crate) use void::find_void_of_chain;
 pub use void::{VoidPlace, VoidTaken};

@@ -68,6 +68,8 @@ pub struct HopperLimits {
     pub takeoff_speed_levels: Option<SpeedLevels>,
     /// The steps of its commands.
     pub steps: CommandSteps,
+    /// Radius of the ball that the hopper is in flight, m, over meshes alone; 0 counts as none: a point.
+    pub radius_m: Option<f64>,
     /// Diameter of the ground that the hopper stands on, m. The plane fitted over it is then held against the rest slope, instead of
     /// the facet under the contact; 0 counts as none.
     pub footprint_m: Option<f64>,
@@ -111,6 +113,7 @@ impl HopperLimits {
         takeoff_speed_min_m_s: None,
         takeoff_speed_levels: None,
         steps: CommandSteps::CONTINUOUS,
+        radius_m: None,
         footprint_m: None,
         roughness_max_m: None,
         mass_kg: None,
@@ -228,6 +231,7 @@ impl Hopper {
             takeoff_speed_levels,
             // `steps::problems` checks these.
             steps: _,
+            radius_m,
             footprint_m,
             roughness_max_m,
             mass_kg,
@@ -289,6 +293,7 @@ impl Hopper {
                 takeoff_speed_levels.map_or(0.0, |levels| levels.lowest_m_s()),
                 "no level below takeoff_speed_min_m_s",
             ),
+            number("radius_m", radius_m, not_negative, NOT_NEGATIVE),
             number("footprint_m", footprint_m, not_negative, NOT_NEGATIVE),
             number("roughness_max_m", roughness_max_m, not_negative, NOT_NEGATIVE),
             (

@@ -2,10 +2,12 @@
 
 mod body;
 mod derating;
+mod face_group;
 mod friction_cone;
 mod gravity;
 mod hopper;
 mod limit;
+mod prepared_cone;
 mod propulsion;
 mod restitution;
 mod speed_levels;
@@ -15,10 +17,12 @@ mod travel;
 
 pub use body::{Body, KNOWN_BODIES};
 pub use derating::Derating;
+pub use face_group::{FaceGroup, FaceGroups};
 pub use friction_cone::{FrictionCone, InvalidFriction};
 pub use gravity::{Gravity, InvalidGravity, InvalidRadius};
 pub use hopper::{ClearanceRule, Hopper, HopperLimits, HopperProblem, InvalidHopper};
 pub use limit::{Limit, SPEED_TOLERANCE, tolerant_speed_m_s};
+pub use prepared_cone::PreparedCone;
 pub use propulsion::LandingMode;
 pub(crate) use restitution::RESTITUTION_MAX;
 pub use restitution::{InvalidRestitution, Restitution};

@@ -1124,7 +1124,7 @@ fn threads_change_nothing() {
 #[test]
 fn every_option_of_synth_changes_the_ground() {
     let base = &SYNTH[..];
-    let switches = ["--craters", "--rille", "--boulders", "--no-ground", "--boulder-burial"];
+    let switches = ["--craters", "--rille", "--boulders", "--no-ground", "--boulder-burial", "--mesh"];
     let tried = SYNTH_OPTIONS.iter().map(|option| option.0).chain(switches);
     assert_eq!(tried.map(str::to_owned).collect::<BTreeSet<_>>(), options("synth"));
     let desk = desk();
@@ -1154,6 +1154,16 @@ fn every_option_of_synth_changes_the_ground() {
         assert!(ground(&bare) != ground(&[&bare[..], &[switch]].concat()), "{switch} changes nothing");
     }
     assert_eq!(desk.run(&["synth", "-o", "new.asc", "--quiet"]).status, 2);
+    let mesh = |scene: &str, seed: &str| {
+        assert_eq!(desk.run(&["synth", "--mesh", scene, "--seed", seed, "-o", "new.obj"]).status, 0, "{scene}");
+        desk.read("new.obj")
+    };
+    let meshes = [("cave", "1"), ("cave", "2"), ("overhang", "1"), ("rubble", "1")].map(|(scene, seed)| mesh(scene, seed));
+    assert!(meshes[0] == mesh("cave", "1"), "the same options give the same bytes");
+    assert!((1..4).all(|i| !meshes[..i].contains(&meshes[i])), "--mesh or --seed changes nothing");
+    let ran = desk.run(&["synth", "--mesh", "cave", "-o", "new.tif"]);
+    assert!(ran.status == 2 && ran.stderr.contains("expected .obj, .stl or .ply"), "{}", ran.stderr);
+    assert_eq!(desk.run(&["synth", "--mesh", "cave", "--rows", "9", "-o", "new.obj"]).status, 2);
 }
 
 #[test]

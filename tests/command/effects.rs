@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 97] = [
+const TELLING: [(&str, &str); 99] = [
     ("body.name", "moon"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -25,6 +25,7 @@ const TELLING: [(&str, &str); 97] = [
     ("hopper.takeoff_angle_step_deg", "7"),
     ("hopper.takeoff_speed_step_m_s", "0.8"),
     ("hopper.heading_step_deg", "20"),
+    ("hopper.radius_m", "0.1"),
     ("hopper.footprint_m", "25"),
     ("hopper.roughness_max_m", "0.01"),
     ("hopper.mass_kg", "7"),
@@ -41,6 +42,7 @@ const TELLING: [(&str, &str); 97] = [
     ("surface.friction_coefficient", "0.3"),
     ("surface.rest_slope_max_deg", "1"),
     ("surface.keep_out", "none.tif"),
+    ("surface.group", "{ ice = { friction_coefficient = 0.1 } }"),
     ("surface.friction_raster", "none.tif"),
     ("surface.takeoff_from_slope_deg", "[60, 90]"),
     ("surface.landing_from_slope_deg", "[-90, -60]"),

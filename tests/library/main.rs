@@ -44,6 +44,8 @@ mod map_verified;
 mod map_world;
 mod margins;
 mod mended;
+mod mesh_ball;
+mod mesh_degenerate;
 mod mesh_flight;
 mod mesh_routes;
 mod mesh_slices;

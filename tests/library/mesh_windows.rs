@@ -20,8 +20,8 @@ use crate::support::Draw;
 /// Corners and triangles under construction.
 #[derive(Clone, Default)]
 pub(crate) struct Shape {
-    corners: Vec<Point3<f64>>,
-    triangles: Vec<[u32; 3]>,
+    pub(crate) corners: Vec<Point3<f64>>,
+    pub(crate) triangles: Vec<[u32; 3]>,
 }
 
 impl Shape {
@@ -288,7 +288,7 @@ fn windows_keep_the_clearance_over_and_under_all_facets() {
 }
 
 /// The interval of lofts that all limits but the terrain leave.
-fn limits_but_terrain(set: &MeshTakeoffSet) -> Result<([f64; 2], usize), ()> {
+pub(crate) fn limits_but_terrain(set: &MeshTakeoffSet) -> Result<([f64; 2], usize), ()> {
     let mut all = [0.0_f64, f64::INFINITY];
     for limit in set.limits() {
         all = [all[0].max(limit.lofts.lower), all[1].min(limit.lofts.upper)];
@@ -380,7 +380,7 @@ fn a_mesh_that_is_a_triangulated_dem_has_the_windows_of_the_dem() {
 }
 
 /// A flat floor and whatever stands on it.
-fn on_a_floor(build: impl FnOnce(&mut Shape)) -> Shape {
+pub(crate) fn on_a_floor(build: impl FnOnce(&mut Shape)) -> Shape {
     let mut shape = Shape::default();
     shape.polygon(&[[-5.0, -5.0, 0.0], [15.0, -5.0, 0.0], [15.0, 5.0, 0.0], [-5.0, 5.0, 0.0]]);
     build(&mut shape);
@@ -388,14 +388,14 @@ fn on_a_floor(build: impl FnOnce(&mut Shape)) -> Shape {
 }
 
 /// The set between the points at x = 0 and 10 m of the floor, with a friction and speeds that leave nearly everything.
-fn across(shape: Shape, clearance_m: f64) -> MeshTakeoffSet {
+pub(crate) fn across(shape: Shape, clearance_m: f64) -> MeshTakeoffSet {
     let limits = HopperLimits { clearance_m, ..HopperLimits::with_speeds(1e3, 1e3) };
     let ground = ground(shape.mesh(), limits, 9.81, &surface(100.0));
     let [from, to] = [0.0, 10.0].map(|x| ground.contact(Point3::new(x, 0.3, 0.0)).unwrap());
     ground.takeoff_set(&from, &to).unwrap()
 }
 
-fn ends(set: &MeshTakeoffSet) -> Vec<[f64; 2]> {
+pub(crate) fn ends(set: &MeshTakeoffSet) -> Vec<[f64; 2]> {
     set.windows().iter().map(|window| [window.lofts.lower, window.lofts.upper]).collect()
 }
 

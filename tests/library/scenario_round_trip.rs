@@ -82,6 +82,14 @@ fn value(key: &Key) -> BoxedStrategy<String> {
                 format!("[{}]", speeds.join(", "))
             })
             .boxed(),
+        Kind::FaceGroups => proptest::collection::btree_map("[a-z_]{1,6}", (0.0..2.0_f64, 0.0..90.0_f64, any::<bool>()), 1..4)
+            .prop_map(|groups| {
+                let group = |(name, (friction, rest_deg, keep_out)): (&String, &(f64, f64, bool))| {
+                    format!("{name} = {{ friction_coefficient = {friction:?}, rest_slope_max_deg = {rest_deg:?}, keep_out = {keep_out} }}")
+                };
+                format!("{{ {} }}", groups.iter().map(group).collect::<Vec<_>>().join(", "))
+            })
+            .boxed(),
         Kind::Amounts => proptest::sample::subsequence(Amount::ALL[..9].to_vec(), 1..4)
             .prop_shuffle()
             .prop_map(|amounts| format!("{:?}", amounts.iter().map(|amount| amount.name()).collect::<Vec<_>>()))
@@ -235,6 +243,7 @@ fn every_key_reaches_the_document() {
         Kind::NumberOrNone => "-9999.5",
         Kind::Speeds => "[2.0, 4.5]",
         Kind::Amounts => "[\"energy\", \"hops\"]",
+        Kind::FaceGroups => "{ ice = { friction_coefficient = 0.125, keep_out = true, rest_slope_max_deg = \"inf\" } }",
         Kind::MapPoints | Kind::LonLats => "[[12.5, -3.0], [1.0, 2.0]]",
         Kind::CountOrAuto | Kind::Count { .. } => "7",
         Kind::Word(words) => words[words.len() - 1],

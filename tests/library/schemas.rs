@@ -145,6 +145,7 @@ fn value_and_mistake(kind: Kind) -> (Value, Value) {
         Kind::NumberOrNone => (json!("none"), json!("nothing")),
         Kind::Word(words) => (json!(words[0]), json!("other")),
         Kind::Speeds => (json!([1.0, 2.5]), json!([])),
+        Kind::FaceGroups => (json!({ "ice": { "keep_out": true } }), json!({ "ice": {} })),
         Kind::Amounts => (json!(["hops", "energy"]), json!(["fuel"])),
         Kind::Text => (json!("mars"), json!(" ")),
     }

@@ -5,6 +5,7 @@
 
 mod apex;
 mod blocked;
+mod blocked_ball;
 mod commanded;
 mod cones;
 mod flight_time;
@@ -13,6 +14,7 @@ mod terrain;
 
 pub use apex::apex_height;
 pub use blocked::blocked_lofts;
+pub use blocked_ball::{BALL_BOUND, BALL_CORNERS, blocked_lofts_of_ball};
 pub use commanded::{takeoff_speed_level, takeoff_speed_min};
 pub use cones::{landing_cone, takeoff_cone};
 pub use flight_time::flight_time;

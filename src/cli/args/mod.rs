@@ -24,7 +24,7 @@ pub(crate) use maps::{FanArgs, MapArgs, NodeSpacing};
 pub(crate) use position::{Position, place};
 use position::{lon_lat, map_point, position};
 pub(crate) use setup::{CompletionsArgs, ManArgs, SchemaArgs};
-pub(crate) use synth::SynthArgs;
+pub(crate) use synth::{MeshArg, SynthArgs};
 pub(crate) use terrains::SliceArgs;
 
 /// Constrained hopping traversability analysis: can a hopping robot get from here to there, in how few hops, with which commands?

@@ -4,25 +4,36 @@ use std::path::PathBuf;
 
 use chta::{
     quantity::{Angle, MapPoint},
-    terrain::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain},
+    terrain::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticMesh, SyntheticTerrain},
 };
 use clap::{Args as ClapArgs, ValueEnum};
 
 use super::map_point;
 
-/// Generate terrain from a seed: fractal ground, craters, a rille, boulders
+/// Generate terrain from a seed: fractal ground, craters, a rille, boulders; or a mesh with overhangs
 ///
 /// The same options give the same bytes on every machine.
 #[derive(Debug, ClapArgs)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 #[command(after_help = "Example:\n  chta synth --rows 200 --cols 200 --craters --crater-density-per-km2 2000 --seed 7 -o moon.tif")]
 pub(crate) struct SynthArgs {
-    /// Elevation raster to write: .tif (GeoTIFF) or .asc (ESRI ASCII grid)
+    /// Elevation raster to write: .tif (GeoTIFF) or .asc (ESRI ASCII grid); with --mesh .obj, .stl or .ply
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     pub(crate) seed: u64,
+    /// A mesh in place of an elevation raster: a tunnel, a roof over the ground, or boulders
+    #[arg(
+        long,
+        value_enum,
+        value_name = "SCENE",
+        conflicts_with_all = [
+            "rows", "cols", "spacing_m", "south_west_m", "mean_elevation_m", "tilt_deg", "tilt_towards_deg", "no_ground", "ground_hurst",
+            "ground_rms_m", "ground_baseline_m", "craters", "rille", "boulders",
+        ]
+    )]
+    pub(crate) mesh: Option<MeshArg>,
     /// Rows of posts
     #[arg(long, default_value_t = 257, allow_negative_numbers = true)]
     pub(crate) rows: usize,
@@ -112,6 +123,28 @@ pub(crate) struct SynthArgs {
     pub(crate) boulder_burial: f64,
 }
 
+/// A scene of closed bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MeshArg {
+    /// A tunnel that bends and climbs.
+    Cave,
+    /// A cliff whose roof reaches out over the ground.
+    Overhang,
+    /// Boulders on the ground and on one another.
+    Rubble,
+}
+
+impl MeshArg {
+    /// The scene.
+    pub(crate) const fn scene(self) -> SyntheticMesh {
+        match self {
+            Self::Cave => SyntheticMesh::Cave,
+            Self::Overhang => SyntheticMesh::Overhang,
+            Self::Rubble => SyntheticMesh::Rubble,
+        }
+    }
+}
+
 /// Depth law of fresh craters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum DepthLawArg {
@@ -126,6 +159,7 @@ impl From<&SynthArgs> for SyntheticTerrain {
     fn from(args: &SynthArgs) -> Self {
         let SynthArgs {
             output: _,
+            mesh: _,
             seed,
             rows,
             cols,

@@ -1,11 +1,20 @@
 //! `chta synth`: synthetic terrain from a seed.
 
-use chta::terrain::{Boulders, SyntheticTerrain, geotiff_bytes, synthesise, write_ascii_grid};
+use chta::terrain::{
+    Boulders, MeshFormatWritten, SyntheticTerrain, geotiff_bytes, mesh_bytes, synthesise, synthesise_mesh, write_ascii_grid,
+};
 
-use crate::cli::{Answer, Failure, args::SynthArgs, output};
+use crate::cli::{
+    Answer, Failure,
+    args::{MeshArg, SynthArgs},
+    output,
+};
 
 /// Generates terrain and writes it.
 pub(crate) fn run(args: &SynthArgs) -> Result<Answer, Failure> {
+    if let Some(mesh) = args.mesh {
+        return write_mesh(args, mesh);
+    }
     let ascii = match args.output.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).as_deref() {
         Some("tif" | "tiff") => false,
         Some("asc") => true,
@@ -37,5 +46,14 @@ pub(crate) fn run(args: &SynthArgs) -> Result<Answer, Failure> {
         geotiff_bytes(&dem).map_err(failed)?
     };
     output::to_file(&args.output, &bytes)?;
+    Ok(Answer::Yes)
+}
+
+/// Generates a mesh and writes it.
+fn write_mesh(args: &SynthArgs, mesh: MeshArg) -> Result<Answer, Failure> {
+    let expected = || format!("-o {}: found no known extension, expected .obj, .stl or .ply for a mesh", args.output.display());
+    let format = MeshFormatWritten::of_path(&args.output).ok_or_else(|| Failure::message(expected()))?;
+    let mesh = synthesise_mesh(mesh.scene(), args.seed).map_err(|error| Failure::of(&error))?;
+    output::to_file(&args.output, &mesh_bytes(&mesh, format))?;
     Ok(Answer::Yes)
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 
-use super::MeshGround;
+use super::{MeshGround, hold::Hold};
 use crate::quantity::FacetId;
 
 /// A facet at a contact.
@@ -12,12 +12,16 @@ pub struct MeshContactFacet {
     pub id: FacetId,
     /// Its normal, of length 1.
     pub normal: Vector3<f64>,
+    /// What holds a take-off and a landing on it.
+    pub(super) holds: [Hold; 2],
 }
 
 /// A point of the surface of a mesh where a hop takes off or lands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshContact {
     point_m: Point3<f64>,
+    /// The point of the surface.
+    surface_m: Point3<f64>,
     moved_m: f64,
     /// How far the point stands off the surface.
     stand_off_m: f64,
@@ -54,6 +58,22 @@ pub enum NoMeshContact {
         /// The nearest point of the surface.
         nearest_m: Point3<f64>,
     },
+    /// The ball of the hopper has no room there.
+    #[error(
+        "a ball of radius {radius_m} m on the surface at ({}, {}, {}) m touches facet {}, {distance_m:.6} m from its centre, expected room \
+         for it: choose a place farther away from walls and edges, or a smaller hopper.radius_m",
+        point_m.x, point_m.y, point_m.z, facet.index() + 1
+    )]
+    NoRoom {
+        /// The point of the surface.
+        point_m: Point3<f64>,
+        /// The radius of the ball, m.
+        radius_m: f64,
+        /// What it touches.
+        facet: FacetId,
+        /// How far that is from the centre of the ball, m.
+        distance_m: f64,
+    },
     /// Not three finite numbers.
     #[error("({}, {}, {}) is no point, expected three finite numbers", point_m.x, point_m.y, point_m.z)]
     NoPoint {
@@ -66,9 +86,15 @@ pub enum NoMeshContact {
 const TYPED: f64 = 1.0e-4;
 
 impl MeshContact {
-    /// The point, m.
+    /// Where flights begin and end, m: the point of the surface, the centre of a ball that stands there
+    /// ([`BALL_STAND_OFF`](super::BALL_STAND_OFF) radii off it, along the mean of the normals), or a place that stands off otherwise.
     pub const fn point_m(&self) -> Point3<f64> {
         self.point_m
+    }
+
+    /// The point of the surface, m.
+    pub const fn surface_m(&self) -> Point3<f64> {
+        self.surface_m
     }
 
     /// How far the point was moved to the surface, m.
@@ -102,7 +128,7 @@ impl MeshGround {
     /// The contact at the point of the surface that is nearest to a given one.
     ///
     /// # Errors
-    /// [`NoMeshContact`] for a point inside rock, and for surface that is.
+    /// [`NoMeshContact`] for a point inside rock, for surface that is, and where a ball has no room.
     pub fn contact(&self, at: Point3<f64>) -> Result<MeshContact, NoMeshContact> {
         if !at.coords.iter().all(|coordinate| coordinate.is_finite()) {
             return Err(NoMeshContact::NoPoint { point_m: at });
@@ -118,7 +144,7 @@ impl MeshGround {
         let facets: Vec<MeshContactFacet> = tree
             .touching(nearest.point)
             .into_iter()
-            .map(|id| MeshContactFacet { id, normal: tree.normal(id).into_inner() })
+            .map(|id| self.contact_facet(id))
             .collect();
         let mean: Vector3<f64> = facets.iter().map(|facet| facet.normal).sum();
         if let Some(outwards) = mean.try_normalize(1.0e-6)
@@ -126,7 +152,9 @@ impl MeshGround {
         {
             return Err(NoMeshContact::Covered { point_m: at, nearest_m: nearest.point });
         }
-        Ok(MeshContact { point_m: nearest.point, moved_m: nearest.distance_m, stand_off_m: 0.0, facets })
+        let point_m = self.centre(nearest.point, mean, &facets)?;
+        let stand_off_m = (point_m - nearest.point).norm();
+        Ok(MeshContact { point_m, surface_m: nearest.point, moved_m: nearest.distance_m, stand_off_m, facets })
     }
 
     /// A contact as [`contact`](Self::contact) and [`stood_off`](Self::stood_off) gave it, by its point, how far it was moved to the surface
@@ -144,19 +172,27 @@ impl MeshGround {
         }
         let near_m = 2.0 * tree.resolution_m() + stand_off_m;
         let lies_on = |id: &FacetId| (point_m - tree.corners(*id)[0]).dot(&tree.normal(*id)).abs() <= near_m;
-        let lies = facets.iter().all(lies_on) && tree.nearest(point_m).distance_m <= near_m;
-        let of_facet = |id: &FacetId| MeshContactFacet { id: *id, normal: tree.normal(*id).into_inner() };
-        lies.then(|| MeshContact { point_m, moved_m, stand_off_m, facets: facets.iter().map(of_facet).collect() })
+        let nearest = tree.nearest(point_m);
+        let lies = facets.iter().all(lies_on) && nearest.distance_m <= near_m;
+        let surface_m = if stand_off_m == 0.0 { point_m } else { nearest.point };
+        let facets = facets.iter().map(|id| self.contact_facet(*id)).collect();
+        lies.then_some(MeshContact { point_m, surface_m, moved_m, stand_off_m, facets })
     }
 
-    /// A contact moved off its surface along the mean normal of its facets, whose limits it keeps; `None` where it would then lie inside
-    /// a body, or nearer to the mesh than that.
+    /// A facet at a contact, and what holds there.
+    fn contact_facet(&self, id: FacetId) -> MeshContactFacet {
+        let normal = self.tree().normal(id).into_inner();
+        MeshContactFacet { id, normal, holds: self.holds(id, normal) }
+    }
+
+    /// A contact moved off its surface along the mean normal of its facets, whose limits it keeps, unless a ball stands farther off already;
+    /// `None` where it would then lie inside a body, or nearer to the mesh than that.
     pub fn stood_off(&self, contact: &MeshContact, stand_off_m: f64) -> Option<MeshContact> {
-        if stand_off_m == 0.0 {
+        if stand_off_m <= contact.stand_off_m {
             return Some(contact.clone());
         }
         let mean: Vector3<f64> = contact.facets.iter().map(|facet| facet.normal).sum();
-        let point_m = contact.point_m + mean.try_normalize(1.0e-6)? * stand_off_m;
+        let point_m = contact.surface_m + mean.try_normalize(1.0e-6)? * stand_off_m;
         let tree = self.tree();
         let clear_m = stand_off_m * (1.0 - 1.0e-6) - tree.resolution_m();
         let stands = tree.nearest(point_m).distance_m >= clear_m && !tree.is_buried(point_m);

@@ -72,13 +72,13 @@ impl MeshGround {
     /// Whether the hopper rests on a facet.
     fn rests(&self, facet: FacetId) -> Result<(), ContactFailure> {
         let normal = self.outer_normal(facet);
-        let holds = rest_slope(self.surface.rest, self.friction_now(facet))
+        let holds = rest_slope(self.face_surface(facet).surface.rest, self.friction_now(facet))
             .is_none_or(|max| normal.z > 0.0 && normal.xy().norm() <= normal.z * (max + ANGLE_TOLERANCE_RAD * (1.0 + max * max)));
         if holds { Ok(()) } else { Err(ContactFailure::Slides) }
     }
 
     fn is_kept_out(&self, facet: FacetId) -> bool {
-        self.ground_of(facet).keep_out
+        self.face_surface(facet).ground.keep_out
     }
 
     /// Whether a facet holds a take-off.

@@ -14,16 +14,21 @@
 //! Source: Campana and Laumond 2016, *Ballistic motion planning*, who sample angles of the arcs and check them one by one; the windows
 //! are the closed form of what they sample.
 
+mod ball;
 mod blocked;
 mod contact;
+mod face_surfaces;
 mod flight;
+mod hold;
 mod room;
 mod surface;
 mod takeoff_set;
 
+pub use ball::BALL_STAND_OFF;
 pub use blocked::BlockedSpan;
 pub use contact::{MeshContact, MeshContactFacet, NoMeshContact};
 pub use surface::MeshPosition;
+pub use face_surfaces::UnknownGroup;
 pub use takeoff_set::{MeshConflict, MeshTakeoffSet, MeshWindow, MeshWindowEnd};
 
 use std::{ops::ControlFlow, sync::Arc};
@@ -31,13 +36,17 @@ use std::{ops::ControlFlow, sync::Arc};
 use nalgebra::Vector2;
 
 use crate::{
-    ballistics::{ContactLimits, FlightEnvelope, LineOfSight, limits::blocked_lofts},
-    chain::{ConstraintProblem, FacetGround, GroundRefusal, facet_constraints},
-    quantity::{Angle, AngleInterval, ChainPoint, FacetId, SlopeInterval},
+    ballistics::{
+        FlightEnvelope, LineOfSight,
+        limits::{blocked_lofts, blocked_lofts_of_ball},
+    },
+    chain::{ConstraintProblem, FacetGround, facet_constraints},
+    quantity::{ChainPoint, FacetId, SlopeInterval},
     terrain::{MeshTree, VerticalPlane},
-    world::{Contact, Direction, Gravity, Hopper, SurfaceProperties},
+    world::{Contact, Derating, FaceGroups, Gravity, Hopper, SurfaceProperties},
 };
 use blocked::BlockedLofts;
+use face_surfaces::{FaceSurface, surfaces};
 
 /// A mesh with the hopper, gravity and the surface: all that a hop between two of its points depends on. A clone shares the mesh.
 #[derive(Clone, Debug)]
@@ -49,6 +58,8 @@ pub struct MeshGround {
     friction_error: f64,
     /// How far contacts stand off the surface, m.
     stand_off_m: f64,
+    /// Of every kind of face.
+    faces: Arc<[FaceSurface]>,
 }
 
 /// The course of a hop between two contacts of a mesh.
@@ -68,7 +79,8 @@ pub struct MeshBuffers {
 }
 
 impl MeshGround {
-    /// The ground of a mesh for a hopper and gravity.
+    /// The ground of a mesh for a hopper and gravity, with what its file states of its faces; for groups that a scenario names, see
+    /// [`with_groups`](Self::with_groups).
     ///
     /// # Errors
     /// [`ConstraintProblem`], where the surface states no grip, or the hopper no speeds.
@@ -81,13 +93,10 @@ impl MeshGround {
         surface.check()?;
         let level = nalgebra::Vector3::z();
         facet_constraints(level, Vector2::x(), FacetGround::default(), hopper, gravity, surface)?;
-        Ok(Self {
-            tree: tree.into(),
-            envelope: FlightEnvelope::new(hopper, gravity),
-            surface: *surface,
-            friction_error: 0.0,
-            stand_off_m: 0.0,
-        })
+        let tree: Arc<MeshTree> = tree.into();
+        let faces = surfaces(tree.mesh().faces(), surface, &FaceGroups::new(), &Derating::NONE);
+        let envelope = FlightEnvelope::new(hopper, gravity);
+        Ok(Self { tree, envelope, surface: *surface, friction_error: 0.0, stand_off_m: 0.0, faces })
     }
 
     /// The mesh.
@@ -108,48 +117,23 @@ impl MeshGround {
     /// The course from one contact to another; `None` where one is right over the other: a vertical hop has no plane.
     pub fn course(&self, takeoff: &MeshContact, landing: &MeshContact) -> Option<MeshCourse> {
         let away = landing.point_m() - takeoff.point_m();
-        let run_m = libm::hypot(away.x, away.y);
+        // Coordinates are far from where a square overflows, and shorter runs than a square resolves are no hops.
+        let run_m = (away.x * away.x + away.y * away.y).sqrt();
         if run_m <= self.tree.resolution_m() {
             return None;
         }
         let heading = away.xy() / run_m;
         // The slope of a facet has more digits than the difference of two heights on it.
-        let on_surface = takeoff.stand_off_m() == 0.0 && landing.stand_off_m() == 0.0;
-        let shared = takeoff.facets().iter().find(|facet| on_surface && facet.normal.z > 0.0 && landing.touches(facet.id));
+        // (Places that stand off edges, or not equally far, are not over one facet.)
+        let is_alike = takeoff.stand_off_m() == landing.stand_off_m();
+        let is_on_one = takeoff.stand_off_m() == 0.0 || (takeoff.facets().len() == 1 && landing.facets().len() == 1);
+        let over = |facet: &&MeshContactFacet| is_alike && is_on_one && facet.normal.z > 0.0 && landing.touches(facet.id);
+        let shared = takeoff.facets().iter().find(over);
         let sight = match shared {
             Some(facet) => LineOfSight::along(run_m, (-facet.normal.xy() / facet.normal.z).dot(&heading)),
             None => LineOfSight::new(run_m, away.z),
         };
         Some(MeshCourse { plane: VerticalPlane { origin: takeoff.point_m(), heading }, sight })
-    }
-
-    /// What the facets at a contact allow for a direction of travel: the strictest of each limit.
-    ///
-    /// # Errors
-    /// Why they refuse every hop, and the facet that does.
-    pub fn allowed(
-        &self,
-        contact: &MeshContact,
-        heading: Vector2<f64>,
-        kind: Contact,
-    ) -> Result<ContactLimits, (GroundRefusal, FacetId)> {
-        let mut least = ContactLimits { slopes: SlopeInterval::ALL, speed_max_m_s: f64::INFINITY };
-        let mut last = FacetId(0);
-        for facet in contact.facets() {
-            last = facet.id;
-            let (hopper, gravity) = (self.envelope.hopper(), self.envelope.gravity());
-            let constraints = facet_constraints(facet.normal, heading, FacetGround::default(), hopper, gravity, &self.surface)
-                .map_err(|_| (GroundRefusal::NoGround, facet.id))?;
-            let rule = constraints.check_contact(kind, Direction::Forward).map_err(|refusal| (refusal, facet.id))?;
-            least.slopes = least.slopes.intersect(rule.slopes());
-            least.speed_max_m_s = least.speed_max_m_s.min(rule.speed_max_m_s());
-        }
-        if least.slopes.is_empty() {
-            let [min, max] = [least.slopes.lower, least.slopes.upper].map(Angle::from_slope);
-            let angles = AngleInterval { min, max };
-            return Err((GroundRefusal::FacetsDisagree { angles }, last));
-        }
-        Ok(least)
     }
 
     /// The feasible windows of one hop, as lofts over its line of sight, ascending and disjoint; none if no arc is feasible, and `None`
@@ -166,9 +150,8 @@ impl MeshGround {
         let MeshBuffers { blocked, free } = buffers;
         free.clear();
         let heading = course.plane.heading;
-        let (Ok(from), Ok(to)) =
-            (self.allowed(takeoff, heading, Contact::Takeoff), self.allowed(landing, heading, Contact::Landing))
-        else {
+        let from = self.limits(takeoff, heading, Contact::Takeoff);
+        let Some((from, to)) = from.and_then(|from| Some((from, self.limits(landing, heading, Contact::Landing)?))) else {
             return Some((course.sight, &[]));
         };
         let lofts = self.envelope.lofts(course.sight, from, to);
@@ -188,16 +171,21 @@ impl MeshGround {
     fn block(&self, course: &MeshCourse, ends: [&MeshContact; 2], within: SlopeInterval, blocked: &mut BlockedLofts) {
         blocked.clear();
         let shared = std::cell::RefCell::new(blocked);
-        let _ = self.tree.cut(
-            &course.plane,
-            |rectangle| self.may_block(course, rectangle, within, &shared.borrow()),
-            |facet, segment| {
-                let lofts = self.blocked_by(course, ends, facet, segment);
-                let mut blocked = shared.borrow_mut();
-                blocked.insert(lofts, facet);
-                if blocked.covers(within) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            },
-        );
+        let enters = |rectangle| self.may_block(course, rectangle, within, &shared.borrow());
+        let insert = |facet, lofts| {
+            let mut blocked = shared.borrow_mut();
+            blocked.insert(lofts, facet);
+            if blocked.covers(within) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let _ = match self.radius_m() {
+            0.0 => {
+                self.tree.cut(&course.plane, enters, |facet, segment| insert(facet, self.blocked_by(course, ends, facet, segment)))
+            }
+            radius_m => self.tree.slab(&course.plane, radius_m, enters, |facet, part| {
+                let clearance = self.envelope.clearance();
+                insert(facet, blocked_lofts_of_ball(course.sight, part.corners(), radius_m, clearance))
+            }),
+        };
     }
 
     /// The lofts that the part of a facet in the plane of a hop blocks.

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{MeshContact, MeshCourse, MeshGround};
+use super::{MeshContact, MeshContactFacet, MeshCourse, MeshGround};
 use crate::{
     ballistics::{Arc, LineOfSight},
     quantity::Angle,
@@ -69,14 +69,17 @@ impl MeshGround {
 
     /// By how much the facets at a contact are less steep than the rest slope, degrees; infinite where every slope holds.
     pub fn rest_margin_deg(&self, contact: &MeshContact) -> f64 {
-        let most = match self.surface().rest {
-            RestSlope::AsFrictionHolds => self.surface().constant_friction().map(FrictionCone::coefficient).map(Angle::from_slope),
-            RestSlope::AtMost(angle) => Some(angle),
-            RestSlope::Unlimited => None,
+        let margin = |facet: &MeshContactFacet| {
+            let face = self.face_surface(facet.id);
+            let most = match face.surface.rest {
+                RestSlope::AsFrictionHolds => self.friction_of(facet.id).map(FrictionCone::coefficient).map(Angle::from_slope),
+                RestSlope::AtMost(angle) => Some(angle),
+                RestSlope::Unlimited => None,
+            };
+            let tilt = libm::atan2(libm::hypot(facet.normal.x, facet.normal.y), facet.normal.z);
+            most.map_or(f64::INFINITY, |most| most.degrees() - tilt.to_degrees())
         };
-        let Some(most) = most else { return f64::INFINITY };
-        let tilts = contact.facets().iter().map(|facet| libm::atan2(libm::hypot(facet.normal.x, facet.normal.y), facet.normal.z));
-        most.degrees() - tilts.fold(0.0, f64::max).to_degrees()
+        contact.facets().iter().map(margin).fold(f64::INFINITY, f64::min)
     }
 }
 

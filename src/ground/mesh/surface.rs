@@ -2,9 +2,9 @@
 
 use nalgebra::{Point3, Vector2, Vector3};
 
-use super::{MeshContact, MeshGround};
+use super::{BALL_STAND_OFF, MeshContact, MeshGround};
 use crate::{
-    chain::{FacetGround, SegmentConstraints, facet_constraints},
+    chain::SegmentConstraints,
     ground::{ContactPoint, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Triangulated, Windows, dem::rest_slope},
     quantity::FacetId,
     world::{Contact, Direction, FrictionCone, Gravity, Hopper},
@@ -52,20 +52,20 @@ impl MeshGround {
         self.stood_off(&self.contact(point_m).ok()?, self.stand_off_m)
     }
 
-    /// What a facet is, other than its geometry.
-    pub(super) fn ground_of(&self, _facet: FacetId) -> FacetGround {
-        FacetGround::default()
-    }
-
     /// The friction of a facet; `None` where angles are stated instead.
     pub(super) fn friction_of(&self, facet: FacetId) -> Option<FrictionCone> {
-        self.ground_of(facet).friction.or_else(|| self.surface.constant_friction())
+        let face = self.face_surface(facet);
+        face.ground.friction.or_else(|| face.surface.constant_friction())
     }
 
     /// The constraints of a facet for a direction of travel.
     pub(super) fn constraints_of(&self, facet: FacetId, heading: Vector2<f64>) -> Option<SegmentConstraints> {
-        let normal = self.tree.normal(facet).into_inner();
-        facet_constraints(normal, heading, self.ground_of(facet), self.hopper(), self.gravity(), &self.surface).ok()
+        self.constraints(facet, self.tree.normal(facet).into_inner(), heading)
+    }
+
+    /// How far contacts stand off the surface at most, m: a ball farther than it would lie on it.
+    fn standing_off_m(&self) -> f64 {
+        self.stand_off_m.max(BALL_STAND_OFF * self.radius_m())
     }
 
     /// The greatest rounding error of a coordinate of a point on a facet, m.
@@ -97,7 +97,7 @@ impl Surface for MeshGround {
             return None;
         }
         let nearest = self.tree.nearest(stated.point_m);
-        let is_on_it = nearest.distance_m <= self.stand_off_m + self.tree.resolution_m();
+        let is_on_it = nearest.distance_m <= self.standing_off_m() + self.tree.resolution_m();
         Some(MeshPosition { point_m: if is_on_it { stated.point_m } else { nearest.point } })
     }
 
@@ -119,7 +119,7 @@ impl Surface for MeshGround {
                     landing: constraints.check_contact(Contact::Landing, Direction::Forward),
                 },
             };
-            let rest_slope = rest_slope(self.surface.rest, friction.map(FrictionCone::coefficient));
+            let rest_slope = rest_slope(self.face_surface(id).surface.rest, friction.map(FrictionCone::coefficient));
             Some(Facet { refusal: constraints.refusal(), hold, rest_slope })
         };
         self.facets_at(at).into_iter().filter_map(facet).collect()

@@ -141,6 +141,6 @@ fn fingerprint(ground: &MeshGround) -> String {
         hash.update(corner.to_le_bytes());
     }
     // Numbers are printed with all of their digits.
-    hash.update(format!("{:?} {:?}", ground.envelope(), ground.surface()));
+    hash.update(format!("{:?} {:?}", ground.envelope(), ground.face_surfaces()));
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }

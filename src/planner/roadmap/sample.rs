@@ -51,7 +51,7 @@ pub struct DrawnContacts {
     pub on_facets: usize,
     /// About the best path.
     pub about_path: usize,
-    /// Points of the surface inside a closed body, left out; with a stand-off also those that it moves into or too near to another part.
+    /// Points of the surface inside a closed body, left out; with a stand-off or a ball also those without room for it.
     pub buried: usize,
     /// Points outside the bounds, left out.
     pub outside: usize,
@@ -233,9 +233,12 @@ impl<'g> ContactSampler<'g> {
         }
         match self.ground.contact(*point) {
             Ok(contact) => self.ground.stood_off(&contact, self.stand_off_m).map_or(Outcome::Buried, Outcome::Contact),
-            Err(NoMeshContact::InsideRock { .. } | NoMeshContact::Covered { .. } | NoMeshContact::NoPoint { .. }) => {
-                Outcome::Buried
-            }
+            Err(
+                NoMeshContact::InsideRock { .. }
+                | NoMeshContact::Covered { .. }
+                | NoMeshContact::NoRoom { .. }
+                | NoMeshContact::NoPoint { .. },
+            ) => Outcome::Buried,
         }
     }
 

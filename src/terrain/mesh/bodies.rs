@@ -13,6 +13,10 @@ pub(super) struct Bodies {
     closed: Vec<bool>,
     /// Number of closed bodies whose triangles turn their outer sides inwards.
     inverted: usize,
+    /// Number of edges of one triangle, and of others with more triangles one way round than the other.
+    odd_edges: [usize; 2],
+    /// Number of triangles with the same corners as an earlier one.
+    duplicates: usize,
 }
 
 /// A directed edge, from the lower to the higher of its corners or against that, and its triangle.
@@ -53,10 +57,12 @@ impl Bodies {
             })
             .collect();
         let mut closed = vec![true; numbers.len()];
+        let mut odd_edges = [0; 2];
         for edge in edges.chunk_by(|a, b| a.ends == b.ends) {
             let backwards = edge.iter().filter(|edge| edge.backwards).count();
             if 2 * backwards != edge.len() {
                 closed[of[edge[0].facet as usize] as usize] = false;
+                odd_edges[usize::from(edge.len() > 1)] += 1;
             }
         }
         let mut volumes = vec![0.0; closed.len()];
@@ -66,7 +72,7 @@ impl Bodies {
             volumes[*body as usize] += 0.5 * normal_of(triangle).z * height_m;
         }
         let inverted = volumes.iter().zip(&closed).filter(|(volume, closed)| **closed && **volume < 0.0).count();
-        Self { of, closed, inverted }
+        Self { of, closed, inverted, odd_edges, duplicates: duplicates(corners) }
     }
 
     /// Whether a triangle is part of a closed body.
@@ -74,10 +80,32 @@ impl Bodies {
         self.of.get(facet).is_some_and(|body| self.closed[*body as usize])
     }
 
+    /// Number of triangles with the same corners as an earlier one.
+    pub(super) const fn duplicates(&self) -> usize {
+        self.duplicates
+    }
+
+    /// Whether two triangles belong to one body.
+    pub(super) fn are_one(&self, facet: usize, other: usize) -> bool {
+        self.of.get(facet) == self.of.get(other)
+    }
+
+    /// Number of edges of one triangle, and of others with more triangles one way round than the other.
+    pub(super) const fn odd_edges(&self) -> [usize; 2] {
+        self.odd_edges
+    }
+
     /// Number of bodies, of those that are closed, and of closed ones that are inside out.
     pub(super) fn counts(&self) -> [usize; 3] {
         [self.closed.len(), self.closed.iter().filter(|closed| **closed).count(), self.inverted]
     }
+}
+
+/// Number of triangles with the same corners as an earlier one.
+fn duplicates(mut corners: Vec<[u32; 3]>) -> usize {
+    corners.iter_mut().for_each(|corners| corners.sort_unstable());
+    corners.sort_unstable();
+    corners.windows(2).filter(|pair| pair[0] == pair[1]).count()
 }
 
 /// The root of a triangle in the forest of bodies, with paths halved on the way.

@@ -3,6 +3,7 @@
 use nalgebra::Point3;
 
 use super::ears;
+use super::faces::{FaceKind, FaceKindsBuilder};
 use super::model::{Mesh, normal_of};
 use crate::terrain::{NoData, TerrainError};
 
@@ -12,6 +13,7 @@ pub(super) struct MeshBuilder {
     scale: f64,
     vertices: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
+    faces: FaceKindsBuilder,
     /// Number of polygons with more than three corners.
     polygons: usize,
     /// Number of those that are not convex.
@@ -22,7 +24,15 @@ pub(super) struct MeshBuilder {
 
 impl MeshBuilder {
     pub(super) fn new(scale: f64) -> Self {
-        Self { scale, vertices: Vec::new(), triangles: Vec::new(), polygons: 0, concave: 0, warnings: Vec::new() }
+        Self {
+            scale,
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            faces: FaceKindsBuilder::default(),
+            polygons: 0,
+            concave: 0,
+            warnings: Vec::new(),
+        }
     }
 
     /// Adds a vertex in the file's units.
@@ -36,6 +46,11 @@ impl MeshBuilder {
         let index = u32::try_from(self.vertices.len()).map_err(|_| "found over 4294967295 vertices, expected fewer".to_owned())?;
         self.vertices.push(Point3::new(x * self.scale, y * self.scale, z * self.scale));
         Ok(index)
+    }
+
+    /// The kind of the faces that follow.
+    pub(super) fn begin_faces(&mut self, kind: FaceKind) {
+        self.faces.begin(kind);
     }
 
     /// Number of vertices so far.
@@ -81,10 +96,12 @@ impl MeshBuilder {
                 let triangles = ears::cut(&points)?;
                 self.concave += 1;
                 self.triangles.extend(triangles.into_iter().map(|triangle| triangle.map(|at| corners[at])));
+                self.faces.fill(self.triangles.len());
                 return Ok(());
             }
         }
         self.triangles.extend(fan);
+        self.faces.fill(self.triangles.len());
         Ok(())
     }
 
@@ -96,7 +113,9 @@ impl MeshBuilder {
         let scale = self.scale;
         let missing: Vec<bool> = self.vertices.iter().map(|vertex| mark.is_double(vertex.z / scale)).collect();
         let before = self.triangles.len();
-        self.triangles.retain(|corners| corners.iter().all(|corner| !missing[*corner as usize]));
+        let known = |corners: &[u32; 3]| corners.iter().all(|corner| !missing[*corner as usize]);
+        self.faces.retain(|triangle| known(&self.triangles[triangle]));
+        self.triangles.retain(known);
         if self.triangles.is_empty() && before > 0 {
             return Err(TerrainError::InvalidMesh(format!(
                 "every triangle of the mesh has a corner at {mark}, which terrain.no_data states as missing, expected triangles of ground; \
@@ -111,7 +130,7 @@ impl MeshBuilder {
     /// The mesh, and warnings for the user.
     pub(super) fn finish(self) -> Result<(Mesh, Vec<String>), TerrainError> {
         let whole = self.triangles.len();
-        let mesh = Mesh::new(self.vertices, self.triangles)?;
+        let mesh = Mesh::with_faces(self.vertices, self.triangles, self.faces.finish())?;
         let mut warnings = self.warnings;
         if self.polygons > 0 {
             warnings.push(format!(

@@ -13,9 +13,12 @@ const PROBE_BYTES: u64 = 1 << 16;
 
 /// Names of the formats and one line about each, for help texts.
 pub const MESH_FORMATS: [(&str, &str); 3] = [
-    ("OBJ", "vertices and polygons, z up; normals, texture and materials are not used"),
+    ("OBJ", "vertices and polygons, z up, with names of groups, objects and materials; normals and texture are not used"),
     ("STL", "binary or ASCII, z up"),
-    ("PLY", "ascii, binary_little_endian or binary_big_endian, elements vertex (x, y, z) and face, z up"),
+    (
+        "PLY",
+        "ascii, binary_little_endian or binary_big_endian, elements vertex (x, y, z) and face (with friction_coefficient, rest_slope_max_deg, keep_out), z up",
+    ),
 ];
 
 /// A mesh with the warnings of its reader.

@@ -19,18 +19,27 @@
 mod bodies;
 mod build;
 mod ears;
+mod faces;
+mod flaws;
 mod format;
 mod model;
 mod obj;
 mod ply;
+mod slab;
 mod slice;
 mod stl;
 mod text;
 mod tree;
 mod voids;
+mod write;
 
+pub(super) use faces::FaceKindsBuilder;
+pub use faces::{FaceKind, FaceKinds};
+pub use flaws::MeshFlaws;
 pub use format::{MESH_FORMATS, MeshFile, looks_like_mesh, read_mesh, read_mesh_bytes, read_mesh_with};
 pub(crate) use format::{binary_stl_length, format_name};
 pub use model::{Mesh, MeshBounds};
+pub use slab::SlabPolygon;
 pub use slice::{Layers, MeshSlice, WALL_RUN_M, Wall, slice_mesh};
 pub use tree::{MeshTree, NearestOnMesh, VerticalPlane};
+pub use write::{MeshFormatWritten, mesh_bytes};

@@ -2,6 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 
+use super::FaceKinds;
 use crate::quantity::MapPoint;
 use crate::terrain::{ELEVATION_LIMIT_M, MapBounds, TerrainError};
 
@@ -18,6 +19,7 @@ const FLATTEST: f64 = 1.0e-12;
 pub struct Mesh {
     vertices: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
+    faces: FaceKinds,
     dropped: usize,
     bounds: MeshBounds,
     median_edge_m: f64,
@@ -53,11 +55,23 @@ impl Mesh {
     /// # Ok::<(), chta::terrain::TerrainError>(())
     /// ```
     pub fn new(vertices: Vec<Point3<f64>>, triangles: Vec<[u32; 3]>) -> Result<Self, TerrainError> {
-        let mut mesh = Self { vertices, triangles, dropped: 0, bounds: MeshBounds::EMPTY, median_edge_m: 0.0 };
+        Self::with_faces(vertices, triangles, FaceKinds::default())
+    }
+
+    /// The same with what is stated of the triangles beside their shape.
+    pub(in crate::terrain) fn with_faces(
+        vertices: Vec<Point3<f64>>,
+        triangles: Vec<[u32; 3]>,
+        faces: FaceKinds,
+    ) -> Result<Self, TerrainError> {
+        let mut mesh = Self { vertices, triangles, faces, dropped: 0, bounds: MeshBounds::EMPTY, median_edge_m: 0.0 };
         mesh.check_numbers()?;
         let whole = mesh.triangles.len();
         let vertices = &mesh.vertices;
-        mesh.triangles.retain(|corners| has_area(corners.map(|corner| vertices[corner as usize])));
+        let sound = |corners: &[u32; 3]| has_area(corners.map(|corner| vertices[corner as usize]));
+        let triangles = &mesh.triangles;
+        mesh.faces.retain(|triangle| sound(&triangles[triangle]));
+        mesh.triangles.retain(sound);
         mesh.dropped = whole - mesh.triangles.len();
         if mesh.triangles.is_empty() {
             return Err(TerrainError::InvalidMesh(match whole {
@@ -125,6 +139,11 @@ impl Mesh {
     /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
+    }
+
+    /// What the file states of the triangles beside their shape.
+    pub const fn faces(&self) -> &FaceKinds {
+        &self.faces
     }
 
     /// Number of triangles without area that were dropped.

@@ -1,5 +1,6 @@
-//! Wavefront OBJ: the lines `v` and `f`; names, materials, normals and texture are ignored.
+//! Wavefront OBJ: the lines `v` and `f`, and the names of `g`, `o` and `usemtl`; normals and texture are ignored.
 
+use super::FaceKind;
 use super::build::MeshBuilder;
 use super::text::{in_line, lines, shown, three};
 use crate::terrain::TerrainError;
@@ -7,25 +8,31 @@ use crate::terrain::TerrainError;
 pub(super) const NAME: &str = "OBJ";
 
 /// Statements without surface geometry.
-const WITHOUT_SURFACE: [&str; 17] = [
-    "vn",
-    "vt",
-    "vp",
-    "o",
-    "g",
-    "s",
-    "usemtl",
-    "mtllib",
-    "l",
-    "p",
-    "mg",
-    "lod",
-    "usemap",
-    "maplib",
-    "shadow_obj",
-    "trace_obj",
-    "bevel",
-];
+const WITHOUT_SURFACE: [&str; 14] =
+    ["vn", "vt", "vp", "s", "mtllib", "l", "p", "mg", "lod", "usemap", "maplib", "shadow_obj", "trace_obj", "bevel"];
+
+/// Statements that name the faces after them.
+const NAMING: [&str; 3] = ["g", "o", "usemtl"];
+
+/// The names of the faces that follow, by the statements [`NAMING`].
+#[derive(Debug, Default)]
+struct Names([Vec<String>; 3]);
+
+impl Names {
+    /// Replaces the names of a statement.
+    fn replace(&mut self, at: usize, words: std::str::SplitAsciiWhitespace<'_>, builder: &mut MeshBuilder) {
+        // An object and a material have one name, which may hold blanks; a face may be in several groups.
+        self.0[at] = match NAMING[at] {
+            "g" => words.map(str::to_owned).collect(),
+            _ => vec![words.collect::<Vec<_>>().join(" ")],
+        };
+        self.0[at].retain(|name| !name.is_empty());
+        let mut names: Vec<String> = self.0.concat();
+        names.sort_unstable();
+        names.dedup();
+        builder.begin_faces(FaceKind { names, ..FaceKind::default() });
+    }
+}
 
 /// Statements of curves and curved surfaces, and of files to be read in.
 const FREE_FORM: [&str; 19] = [
@@ -38,14 +45,14 @@ pub(super) fn recognises(beginning: &[u8]) -> bool {
     let first = lines(beginning).find(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     first.is_some_and(|(_, line)| {
         let word = line.split_ascii_whitespace().next().unwrap_or_default();
-        (["v", "f", "fo"].contains(&word) || WITHOUT_SURFACE.contains(&word) || FREE_FORM.contains(&word))
+        (["v", "f", "fo"].contains(&word) || NAMING.contains(&word) || WITHOUT_SURFACE.contains(&word) || FREE_FORM.contains(&word))
             && line.len() > word.len()
     })
 }
 
 /// Reads an OBJ.
 pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), TerrainError> {
-    let mut corners = Vec::new();
+    let (mut corners, mut names) = (Vec::new(), Names::default());
     let mut begun: Option<(usize, String)> = None;
     for (number, line) in lines(bytes) {
         // A backslash at the end of a line joins it with the next one.
@@ -64,7 +71,7 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Terrai
                 mend: "an export of the model as polygons".to_owned(),
             });
         }
-        statement(&line, builder, &mut corners).map_err(|problem| in_line(NAME, number, &problem))?;
+        statement(&line, builder, (&mut corners, &mut names)).map_err(|problem| in_line(NAME, number, &problem))?;
     }
     match begun {
         Some((number, _)) => Err(in_line(NAME, number, "the file ends after a backslash, expected one more line")),
@@ -73,7 +80,7 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Terrai
 }
 
 /// Reads one statement.
-fn statement(line: &str, builder: &mut MeshBuilder, corners: &mut Vec<u32>) -> Result<(), String> {
+fn statement(line: &str, builder: &mut MeshBuilder, (corners, names): (&mut Vec<u32>, &mut Names)) -> Result<(), String> {
     let content = line.split('#').next().unwrap_or_default();
     let mut words = content.split_ascii_whitespace();
     match words.next() {
@@ -91,6 +98,11 @@ fn statement(line: &str, builder: &mut MeshBuilder, corners: &mut Vec<u32>) -> R
             builder.polygon(corners)
         }
         Some(word) if WITHOUT_SURFACE.contains(&word) => Ok(()),
+        Some(word) if NAMING.contains(&word) => {
+            let at = NAMING.iter().position(|known| *known == word).unwrap_or_default();
+            names.replace(at, words, builder);
+            Ok(())
+        }
         Some(word) => Err(format!(
             "found the statement '{}', expected v, f or one without a surface; export the mesh as polygons",
             shown(word)

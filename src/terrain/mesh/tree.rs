@@ -4,7 +4,7 @@ use std::{ops::ControlFlow, sync::Arc};
 
 use nalgebra::{Point3, Unit, Vector2, Vector3};
 
-use super::{Mesh, bodies::Bodies, model::normal_of};
+use super::{Mesh, SlabPolygon, bodies::Bodies, model::normal_of};
 use crate::quantity::{ChainPoint, FacetId, MapPoint};
 
 /// The most triangles of a leaf.
@@ -33,6 +33,11 @@ impl Cuboid {
     fn include(&mut self, point: Point3<f64>) {
         self.min = self.min.inf(&point);
         self.max = self.max.sup(&point);
+    }
+
+    /// Whether the two have a point in common.
+    fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.min[axis] <= other.max[axis] && other.min[axis] <= self.max[axis])
     }
 
     /// The square of the distance to a point.
@@ -84,7 +89,7 @@ impl VerticalPlane {
 
     /// How far a point lies to the left of the plane, m.
     #[inline]
-    fn left_m(&self, point: Point3<f64>) -> f64 {
+    pub(super) fn left_m(&self, point: Point3<f64>) -> f64 {
         let away = point - self.origin;
         self.heading.x * away.y - self.heading.y * away.x
     }
@@ -176,6 +181,66 @@ impl MeshTree {
             |bounds| plane.across(bounds, self.resolution_m).is_some_and(&mut enters),
             |facet, corners| cut_triangle(plane, corners, self.resolution_m, |segment| visit(facet, segment)),
         )
+    }
+
+    /// Visits the parts of triangles within a distance beside a vertical plane, seen along its normal, until the visitor breaks.
+    ///
+    /// `enters` as in [`cut`](Self::cut), for rectangles that are wider and higher by that distance on all sides.
+    pub fn slab(
+        &self,
+        plane: &VerticalPlane,
+        within_m: f64,
+        mut enters: impl FnMut([ChainPoint; 2]) -> bool,
+        mut visit: impl FnMut(FacetId, &SlabPolygon) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        self.walk(
+            |bounds| plane.across(bounds, within_m + self.resolution_m).is_some_and(&mut enters),
+            |facet, corners| match SlabPolygon::of(plane, corners, within_m) {
+                Some(part) => visit(facet, &part),
+                None => ControlFlow::Continue(()),
+            },
+        )
+    }
+
+    /// The bodies of the mesh.
+    pub(super) const fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
+    /// Visits the triangles of the leaves whose boxes meet that of a triangle.
+    pub(super) fn near_triangle(&self, triangle: &[Point3<f64>; 3], visit: impl FnMut(FacetId, &[Point3<f64>; 3])) {
+        let mut around = Cuboid::EMPTY;
+        triangle.iter().for_each(|corner| around.include(*corner));
+        self.all_in(|bounds| bounds.meets(&around), visit);
+    }
+
+    /// The first triangle of the mesh, in its order, that a straight line from one point to another passes through and that does not touch
+    /// the first point.
+    pub fn crossed(&self, from: Point3<f64>, to: Point3<f64>) -> Option<FacetId> {
+        let mut line = Cuboid::EMPTY;
+        line.include(from);
+        line.include(to);
+        let way = to - from;
+        let mut first: Option<FacetId> = None;
+        self.all_in(
+            |bounds| bounds.meets(&line),
+            |facet, corners| {
+                let [a, b, c] = corners;
+                let (ab, ac) = (b - a, c - a);
+                let across = way.cross(&ac);
+                let volume = ab.dot(&across);
+                let away = from - a;
+                let (u, beside) = (away.dot(&across) / volume, away.cross(&ab));
+                let (v, share) = (way.dot(&beside) / volume, ac.dot(&beside) / volume);
+                // False where the line is parallel to the triangle: NaN, or infinite.
+                let meets = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && (0.0..=1.0).contains(&share);
+                let touches = || (nearest_of_triangle(corners, from) - from).norm() <= self.resolution_m;
+                if meets && first.is_none_or(|known| facet < known) && !touches() {
+                    first = Some(facet);
+                }
+            },
+        );
+        first
     }
 
     /// Visits the triangles of the leaves in boxes that satisfy a condition, until the visitor breaks.

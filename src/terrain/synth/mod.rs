@@ -9,11 +9,13 @@ mod fractal;
 mod options;
 mod random;
 mod rille;
+mod solids;
 
 pub use boulders::Boulders;
 pub use craters::{Craters, DepthLaw};
 pub use fractal::FractalGround;
 pub use rille::Rille;
+pub use solids::{SyntheticMesh, synthesise_mesh};
 
 use self::options::{at_least, within};
 use super::{Dem, GeoReference, TerrainError};

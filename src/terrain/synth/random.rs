@@ -10,6 +10,7 @@ pub(super) enum Layer {
     Craters = 2,
     Rille = 3,
     Boulders = 4,
+    Solids = 5,
 }
 
 /// A serial stream of draws.

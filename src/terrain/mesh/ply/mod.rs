@@ -5,8 +5,13 @@ mod values;
 
 use self::header::{Element, Encoding, Header, Kind, Property};
 use self::values::Values;
+use super::FaceKind;
 use super::build::MeshBuilder;
-use crate::terrain::TerrainError;
+use crate::{
+    quantity::Angle,
+    terrain::TerrainError,
+    world::{FaceGroup, FrictionCone, RestSlope},
+};
 
 pub(super) const NAME: &str = "PLY";
 
@@ -111,6 +116,30 @@ fn read_vertices(element: &Element, values: &mut Values<'_>, builder: &mut MeshB
     read_rows(element, values, &mut take, &mut end_row)
 }
 
+/// The properties of a face that say what its surface is, by the names of the keys of a scenario.
+const OF_SURFACE: [&str; 4] = ["friction_coefficient", "friction", "rest_slope_max_deg", "keep_out"];
+
+/// What the values of [`OF_SURFACE`] say of a face; NaN says nothing.
+fn face_kind([friction, short, rest_deg, keep_out]: [f64; 4]) -> Result<FaceKind, String> {
+    let friction = if friction.is_nan() { short } else { friction };
+    let friction = match friction.is_nan() {
+        true => None,
+        false => Some(FrictionCone::new(friction).map_err(|error| error.to_string())?),
+    };
+    let rest = match rest_deg {
+        rest_deg if rest_deg.is_nan() => None,
+        f64::INFINITY => Some(RestSlope::Unlimited),
+        rest_deg if (0.0..=90.0).contains(&rest_deg) => Some(RestSlope::AtMost(Angle::from_degrees(rest_deg))),
+        _ => return Err(format!("found a rest_slope_max_deg of {rest_deg}, expected an angle from 0 to 90 degrees, or inf")),
+    };
+    let keep_out = match keep_out {
+        keep_out if keep_out.is_nan() || keep_out == 0.0 => false,
+        1.0 => true,
+        _ => return Err(format!("found a keep_out of {keep_out}, expected 0 or 1")),
+    };
+    Ok(FaceKind { names: Vec::new(), stated: FaceGroup { friction, rest, keep_out } })
+}
+
 fn read_faces(element: &Element, values: &mut Values<'_>, builder: &mut MeshBuilder) -> Result<(), TerrainError> {
     let names = ["vertex_indices", "vertex_index"];
     let is_corners = |property: &Property| property.list.is_some() && names.contains(&property.name.as_str());
@@ -121,14 +150,22 @@ fn read_faces(element: &Element, values: &mut Values<'_>, builder: &mut MeshBuil
     if matches!(element.properties[list].kind, Kind::F32 | Kind::F64) {
         return Err(unsuitable("a PLY whose list vertex_indices holds fractions", whole, mend));
     }
+    let of_surface =
+        OF_SURFACE.map(|name| element.properties.iter().position(|property| property.list.is_none() && property.name == name));
     let corners = std::cell::RefCell::new(Vec::new());
+    let stated = std::cell::Cell::new([f64::NAN; 4]);
     let mut take = |number, value| {
         if number == list {
             corners.borrow_mut().push(value);
+        } else if let Some(at) = of_surface.iter().position(|property| *property == Some(number)) {
+            let mut changed = stated.get();
+            changed[at] = value;
+            stated.set(changed);
         }
     };
     let mut end_row = |row| {
         let at_face = |problem: String| in_row("face", row, &problem);
+        builder.begin_faces(face_kind(stated.replace([f64::NAN; 4])).map_err(at_face)?);
         let named: Result<Vec<u32>, String> = corners.borrow_mut().drain(..).map(vertex_index).collect();
         builder.polygon(&named.map_err(at_face)?).map_err(at_face)
     };
