@@ -74,11 +74,9 @@ impl MeshGround {
         &self.faces[self.tree.mesh().faces().of(facet.index())]
     }
 
-    /// The surfaces of all facets, as far as they differ, in words that no two different ones share.
-    pub(crate) fn face_surfaces(&self) -> String {
-        let faces = self.tree.mesh().faces();
-        let kinds: Vec<usize> = (0..self.tree.mesh().triangle_count()).map(|facet| faces.of(facet)).collect();
-        format!("{:?} {kinds:?}", self.faces)
+    /// The surface of every kind of face, to be compared as text.
+    pub(crate) fn face_surfaces(&self) -> &dyn std::fmt::Debug {
+        &self.faces
     }
 
     /// The names of the groups, the object and the material of a facet.

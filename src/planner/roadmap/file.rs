@@ -140,6 +140,9 @@ fn fingerprint(ground: &MeshGround) -> String {
     for corner in mesh.indices().iter().flatten() {
         hash.update(corner.to_le_bytes());
     }
+    for triangle in 0..mesh.triangle_count() {
+        hash.update(mesh.faces().of(triangle).to_le_bytes());
+    }
     // Numbers are printed with all of their digits.
     hash.update(format!("{:?} {:?}", ground.envelope(), ground.face_surfaces()));
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
