@@ -553,7 +553,7 @@ mod tests {
             "seed",
         ];
         for key in &CATALOGUE {
-            let number = !matches!(key.kind, Kind::Word(_) | Kind::Text | Kind::Flag);
+            let number = !matches!(key.kind, Kind::Word(_) | Kind::Text | Kind::Flag | Kind::FaceGroups);
             assert!(
                 !number || pure.contains(&key.name) || units.iter().any(|unit| key.name.ends_with(unit)),
                 "{} has no unit",

@@ -81,5 +81,9 @@ pub(super) fn format_ground(scenario: &Scenario) -> String {
         (RestSlope::Unlimited, _) => parts.push("rest slope without limit".to_owned()),
     }
     parts.extend(scenario.keep_out.as_deref().map(|path| format!("keep-out {}", file(path))));
+    if !scenario.groups.is_empty() {
+        let names: Vec<&str> = scenario.groups.keys().map(String::as_str).collect();
+        parts.push(format!("other surfaces of {}", names.join(", ")));
+    }
     parts.join("; ")
 }

@@ -162,7 +162,12 @@ impl MeshHopped {
             let [x_m, y_m, z_m] = contact.point_m;
             format!("({x_m:.3}, {y_m:.3}, {z_m:.3})")
         });
-        let question = format!("from {from} to {to} m, heading {:.2} deg: {verdict}", self.answer.heading_deg);
+        let ball = self.answer.ball.map(|ball| {
+            let [radius_m, off_m] = [ball.radius_m, ball.stand_off_m].map(format_number);
+            format!("; arcs of the centre of a ball of radius {radius_m} m, from {off_m} m off the surface")
+        });
+        let question =
+            format!("from {from} to {to} m, heading {:.2} deg: {verdict}{}", self.answer.heading_deg, ball.unwrap_or_default());
         draw_mesh_hop(&MeshHopFigure {
             caption: Caption { title: title("Hop over a mesh", scenario), lines: vec![conditions(scenario), question] },
             cut: cut.into_iter().map(|(_, segment)| segment).collect(),

@@ -187,3 +187,53 @@ fn damaged_meshes_are_refused_and_doubtful_ones_are_counted() {
     let ran = hop(&desk, "box.obj", &["--set", "surface.friction_coefficient=0"]);
     assert!(ran.status == 1 && ran.stdout.contains("contains no direction of travel"), "{ran:?}");
 }
+
+/// The shipped meshes are those of the generator, and hop by hop a path leads from the start of each scenario to its goal; in the cave the
+/// ceiling bounds every hop above.
+#[test]
+fn the_shipped_meshes_have_planted_paths() {
+    let desk = Desk::new();
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    let cave: &[[f64; 3]] = &[
+        [1.5, 0.49, -0.4],
+        [4.0, 1.24, -0.1],
+        [6.5, 1.77, -0.05],
+        [9.0, 1.99, -0.16],
+        [11.5, 1.88, -0.21],
+        [14.0, 1.45, -0.03],
+        [16.5, 0.76, 0.35],
+        [19.0, -0.05, 0.76],
+        [21.5, -0.86, 0.99],
+    ];
+    let overhang: &[[f64; 3]] = &[[-7.0, 0.0, 0.1], [-4.8, 0.0, 0.1], [-0.5, 0.0, 0.1], [2.5, 0.0, 0.1]];
+    let rubble: Vec<[f64; 3]> = [-7.5, -5.0, -2.5, 0.0, 2.5, 5.0, 7.5].map(|x| [x, 0.0, 0.1]).to_vec();
+    for (scene, path) in [("cave", cave), ("overhang", overhang), ("rubble", &rubble)] {
+        let shipped = root.join(format!("mesh/{scene}.obj"));
+        assert_eq!(desk.run(&["synth", "--mesh", scene, "--seed", "1", "-o", "new.obj"]).status, 0);
+        assert!(std::fs::read(&shipped).unwrap() == desk.read("new.obj").into_bytes(), "{scene} is not that of the generator");
+        assert!(shipped.metadata().unwrap().len() < 300_000);
+        let text = std::fs::read_to_string(root.join(format!("mesh_scenarios/{scene}.toml"))).unwrap();
+        let scenario: toml::Table = text.parse().unwrap();
+        let end = |key: &str| -> Vec<f64> {
+            scenario["terrain"][key].as_array().unwrap().iter().map(|number| number.as_float().unwrap()).collect()
+        };
+        assert_eq!((end("start_m"), end("goal_m")), (path[0].to_vec(), path[path.len() - 1].to_vec()), "{scene}");
+        let mut settings = Vec::new();
+        for table in ["body", "hopper", "surface"] {
+            for (key, value) in scenario[table].as_table().unwrap() {
+                settings.extend(["--set".to_owned(), format!("{table}.{key}={value}")]);
+            }
+        }
+        for pair in path.windows(2) {
+            let [from, to] = [pair[0], pair[1]].map(|[x, y, z]| format!("{x},{y},{z}"));
+            let (from, to) = (format!("--from={from}"), format!("--to={to}"));
+            let mut words = vec!["hop", shipped.to_str().unwrap(), &from, &to, "--format", "json"];
+            words.extend(settings.iter().map(String::as_str));
+            let ran = desk.run(&words);
+            assert_eq!((ran.status, ran.stderr.as_str()), (0, ""), "{scene} {words:?}");
+            let document: Value = serde_json::from_str(&ran.stdout).unwrap();
+            let by_ceiling = document["windows"][0]["upper"]["limit"] == "terrain";
+            assert_eq!(by_ceiling, scene == "cave", "{scene} {from}: {}", document["windows"]);
+        }
+    }
+}

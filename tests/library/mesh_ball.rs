@@ -171,7 +171,7 @@ fn balls_keep_their_radius_on_the_published_scenes() {
             let Some(course) = grounds[0].course(&from, &to) else { continue };
             let Some((sight, windows)) = grounds[0].windows(&from, &to, &mut buffers) else { continue };
             kept += u32::from(!windows.is_empty());
-            for lofts in windows.to_vec() {
+            for lofts in windows.iter().copied() {
                 if accepted < 60 {
                     accepted += 1;
                     for loft in [lofts.lower, lofts.upper] {

@@ -301,7 +301,12 @@ fn every_key_reaches_the_document() {
         assert!(scenario.is_ok(), "{}: {scenario:?}", key.path());
         let document = scenario.map(|scenario| scenario_document(&scenario, &|path| path.to_string_lossy().into_owned()));
         let written = document.map(|document| document[key.table][key.name].clone());
-        let expected = alone(key).parse().unwrap_or_else(|_| serde_json::Value::from(alone(key)));
+        // A table of tables is written in another notation there.
+        let given = match key.kind {
+            Kind::FaceGroups => r#"{"ice": {"friction_coefficient": 0.125, "keep_out": true, "rest_slope_max_deg": "inf"}}"#,
+            _ => alone(key),
+        };
+        let expected = given.parse().unwrap_or_else(|_| serde_json::Value::from(given));
         let same = written
             .as_ref()
             .is_ok_and(|written| *written == expected || (written.as_f64().is_some() && written.as_f64() == expected.as_f64()));

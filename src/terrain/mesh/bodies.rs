@@ -103,7 +103,9 @@ impl Bodies {
 
 /// Number of triangles with the same corners as an earlier one.
 fn duplicates(mut corners: Vec<[u32; 3]>) -> usize {
-    corners.iter_mut().for_each(|corners| corners.sort_unstable());
+    for corners in &mut corners {
+        corners.sort_unstable();
+    }
     corners.sort_unstable();
     corners.windows(2).filter(|pair| pair[0] == pair[1]).count()
 }

@@ -98,9 +98,10 @@ mod tests {
                 .replace("f 2 3 4", "f 3 2 4"),
         );
         assert_eq!(inverted, MeshFlaws { inverted_bodies: 1, ..whole });
-        // A strip that turns back through its own beginning: its last edge passes through the first triangle.
+        // A strip that turns back through its own beginning: two edges of its last triangle pass through the first two, and the edge between
+        // these through the last.
         let strip =
             "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 2 2 0\nv 2 2 1\nv 0.4 0.4 1\nv 0.4 0.4 -1\nf 1 2 3\nf 2 4 3\nf 3 4 5\nf 3 5 6\nf 5 7 6\n";
-        assert_eq!(flaws(strip).crossed, Some(1));
+        assert_eq!(flaws(strip).crossed, Some(3));
     }
 }

@@ -210,7 +210,9 @@ impl MeshTree {
     /// Visits the triangles of the leaves whose boxes meet that of a triangle.
     pub(super) fn near_triangle(&self, triangle: &[Point3<f64>; 3], visit: impl FnMut(FacetId, &[Point3<f64>; 3])) {
         let mut around = Cuboid::EMPTY;
-        triangle.iter().for_each(|corner| around.include(*corner));
+        for corner in triangle {
+            around.include(*corner);
+        }
         self.all_in(|bounds| bounds.meets(&around), visit);
     }
 

@@ -154,7 +154,9 @@ impl Solids {
             first.reverse();
             quads.extend([first, of(stations)]);
         }
-        quads.into_iter().for_each(|quad| self.quad(quad));
+        for quad in quads {
+            self.quad(quad);
+        }
     }
 }
 

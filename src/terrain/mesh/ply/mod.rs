@@ -122,10 +122,7 @@ const OF_SURFACE: [&str; 4] = ["friction_coefficient", "friction", "rest_slope_m
 /// What the values of [`OF_SURFACE`] say of a face; NaN says nothing.
 fn face_kind([friction, short, rest_deg, keep_out]: [f64; 4]) -> Result<FaceKind, String> {
     let friction = if friction.is_nan() { short } else { friction };
-    let friction = match friction.is_nan() {
-        true => None,
-        false => Some(FrictionCone::new(friction).map_err(|error| error.to_string())?),
-    };
+    let friction = if friction.is_nan() { None } else { Some(FrictionCone::new(friction).map_err(|error| error.to_string())?) };
     let rest = match rest_deg {
         rest_deg if rest_deg.is_nan() => None,
         f64::INFINITY => Some(RestSlope::Unlimited),
