@@ -24,12 +24,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let file = arguments.next().ok_or("expected a scenario with a mesh and route = \"free\"")?;
     let count: usize = arguments.next().map_or(Ok(2000), |text| text.parse())?;
     let seeds: u64 = arguments.next().map_or(Ok(1), |text| text.parse())?;
-    let scenario = Scenario::new(Entries::from_toml(&std::fs::read_to_string(&file)?)).map_err(|problems| format!("{problems:?}"))?;
+    let scenario =
+        Scenario::new(Entries::from_toml(&std::fs::read_to_string(&file)?)).map_err(|problems| format!("{problems:?}"))?;
     let Some(TerrainSource::MeshInSpace { path, scale, start_m, goal_m }) = &scenario.terrain else {
         return Err("expected a mesh with route = \"free\"".into());
     };
     let base = Path::new(&file).parent().unwrap_or(Path::new(""));
-    let mesh = read_mesh_with(base.join(path), *scale, scenario.no_data)?.mesh;
+    let mesh = read_mesh_with(&base.join(path), *scale, scenario.no_data)?.mesh;
     let ground = MeshGround::new(MeshTree::new(mesh), &scenario.hopper, scenario.body.gravity, &scenario.surface)?;
     let ends = [ground.contact(*start_m)?, ground.contact(*goal_m)?];
     let mut first_paths = Vec::new();
@@ -62,7 +63,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mean = |of: &dyn Fn(&(usize, f64)) -> f64| first_paths.iter().map(of).sum::<f64>() / first_paths.len() as f64;
     #[expect(clippy::cast_precision_loss, reason = "a count for reading")]
     let contacts = mean(&|(contacts, _)| *contacts as f64);
-    println!("first path of {} of {seeds} seeds: {contacts:.0} contacts, {:.4} s", first_paths.len(), mean(&|(_, seconds)| *seconds));
+    println!(
+        "first path of {} of {seeds} seeds: {contacts:.0} contacts, {:.4} s",
+        first_paths.len(),
+        mean(&|(_, seconds)| *seconds)
+    );
     Ok(())
 }
 

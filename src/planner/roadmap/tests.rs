@@ -12,7 +12,7 @@ use super::{
 use crate::{
     ballistics::TakeoffChoice,
     draw::Draw,
-    ground::{MeshContact, MeshGround},
+    ground::{MeshContact, MeshGround, MeshTakeoffSet},
     planner::{Amount, Amounts, Budgets, LabelCap, Objective, SearchedCommands},
     progress::{Progress, Step},
     terrain::{Mesh, MeshTree},
@@ -147,7 +147,7 @@ fn every_window_of_every_pair_is_an_edge() {
     for (from, takeoff) in contacts.iter().enumerate() {
         for (to, landing) in contacts.iter().enumerate().filter(|(to, _)| *to != from) {
             let set = ground.takeoff_set(takeoff, landing);
-            let expected: Vec<_> = set.iter().flat_map(|set| set.windows()).map(|window| window.lofts).collect();
+            let expected: Vec<_> = set.iter().flat_map(MeshTakeoffSet::windows).map(|window| window.lofts).collect();
             let found = roadmap.windows_between(from, to);
             assert_eq!(found.len(), expected.len(), "{from} to {to}");
             for (found, expected) in found.iter().zip(&expected) {
