@@ -37,7 +37,7 @@ fn least_distance_m(
     loft: f64,
     step_m: f64,
 ) -> f64 {
-    let start = from.centre_m();
+    let start = from.point_m();
     let (run_m, mut least, mut d_m) = (sight.run_m(), f64::INFINITY, 0.0);
     while d_m <= run_m {
         let z_m = d_m * (sight.slope() + loft * (1.0 - d_m / run_m));
@@ -233,7 +233,7 @@ fn planted_balls() {
     });
     let ground = ground(floor.mesh(), limits, 9.81, &surface(100.0));
     let [from, to] = [0.0, 10.0].map(|x| ground.contact(Point3::new(x, 0.3, 0.0)).unwrap());
-    assert!((from.centre_m().z - 0.1 * BALL_STAND_OFF).abs() < 1e-12);
+    assert!((from.point_m().z - 0.1 * BALL_STAND_OFF).abs() < 1e-12);
     let set = ground.takeoff_set(&from, &to).unwrap();
     // The centre stays 0.1 m under a ceiling 3 m high: 0.15 + n 10 / 4 = 2.9.
     assert!(set.windows().len() == 1 && (set.windows()[0].lofts.upper - 1.1).abs() < 1e-9, "{:?}", set.windows());
