@@ -5,7 +5,8 @@ use std::{path::Path, time::Duration};
 use nalgebra::Point3;
 
 use super::{
-    MeshHopError,
+    Defect, MeshHopError,
+    mesh_flown::flown_again,
     mesh_hop::{check_keys, mesh_ground},
 };
 use crate::{
@@ -82,6 +83,9 @@ pub enum MeshRouteError {
         "a hop of the planned path is not feasible over the mesh; this is a defect of chta, please report it with the scenario"
     )]
     Lost,
+    /// A path that breaks a limit when it is flown again.
+    #[error(transparent)]
+    Defect(#[from] Defect),
     /// It was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -144,6 +148,7 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
             Some(path_over_mesh(&ground, &contacts, &found.arcs).ok_or(MeshRouteError::Lost)?)
         }
     };
+    path.as_ref().map(|path| flown_again(&ground, &grown, stand_off_m, path)).transpose()?;
     warnings.extend(path.iter().flat_map(|path| scenario.path_warnings(path)));
     warnings.extend(left_out(scenario, &grown, facets));
     let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends));
@@ -200,7 +205,7 @@ fn answer(
         propellant_shortage,
         roadmap: RoadmapRecord::new(grown, &objective, facets),
         gap: gap.map(Into::into),
-        verified: None,
+        verified: path.map(|_| true),
         path: path.map(|path| HopRecord::rows(path, None)).unwrap_or_default(),
         totals: path.map(|path| TotalsRecord::from(&path.totals)),
     }

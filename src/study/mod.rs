@@ -35,6 +35,7 @@ mod journey;
 mod journey_path;
 pub mod map;
 mod measured;
+mod mesh_flown;
 mod mesh_hop;
 mod mesh_route;
 mod nodes;

@@ -44,6 +44,7 @@ mod map_verified;
 mod map_world;
 mod margins;
 mod mended;
+mod mesh_figure;
 mod mesh_flight;
 mod mesh_slices;
 mod mesh_verified;

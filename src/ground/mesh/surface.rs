@@ -1,13 +1,15 @@
 //! A mesh as a ground among others: the facts that the checker and trials ask for.
 
+use std::sync::Arc;
+
 use nalgebra::{Point3, Vector2, Vector3};
 
 use super::{MeshContact, MeshGround};
 use crate::{
-    chain::{FacetGround, SegmentConstraints, facet_constraints},
+    chain::{ConstraintProblem, FacetGround, SegmentConstraints, facet_constraints},
     ground::{ContactPoint, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Triangulated, Windows, dem::rest_slope},
     quantity::FacetId,
-    world::{Contact, Direction, FrictionCone, Gravity, Hopper},
+    world::{Contact, Direction, FrictionCone, Gravity, Hopper, SurfaceProperties},
 };
 
 /// A point of the surface of a mesh.
@@ -41,6 +43,14 @@ impl MeshGround {
         Self { stand_off_m, ..self }
     }
 
+    /// The same mesh under other limits.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn under(&self, hopper: &Hopper, gravity: Gravity, surface: &SurfaceProperties) -> Result<Self, ConstraintProblem> {
+        Ok(Self::new(Arc::clone(&self.tree), hopper, gravity, surface)?.standing_off(self.stand_off_m))
+    }
+
     /// The facets that rule a position: those that meet there, or at the point of the surface that it stands off.
     pub(super) fn facets_at(&self, position: &MeshPosition) -> Vec<FacetId> {
         let met = self.tree.touching(position.point_m);
@@ -53,19 +63,19 @@ impl MeshGround {
     }
 
     /// What a facet is, other than its geometry.
-    pub(super) fn ground_of(&self, _facet: FacetId) -> FacetGround {
-        FacetGround::default()
+    pub(super) const fn ground_of(_facet: FacetId) -> FacetGround {
+        FacetGround { friction: None, keep_out: false }
     }
 
     /// The friction of a facet; `None` where angles are stated instead.
     pub(super) fn friction_of(&self, facet: FacetId) -> Option<FrictionCone> {
-        self.ground_of(facet).friction.or_else(|| self.surface.constant_friction())
+        Self::ground_of(facet).friction.or_else(|| self.surface.constant_friction())
     }
 
     /// The constraints of a facet for a direction of travel.
     pub(super) fn constraints_of(&self, facet: FacetId, heading: Vector2<f64>) -> Option<SegmentConstraints> {
         let normal = self.tree.normal(facet).into_inner();
-        facet_constraints(normal, heading, self.ground_of(facet), self.hopper(), self.gravity(), &self.surface).ok()
+        facet_constraints(normal, heading, Self::ground_of(facet), self.hopper(), self.gravity(), &self.surface).ok()
     }
 
     /// The greatest rounding error of a coordinate of a point on a facet, m.
