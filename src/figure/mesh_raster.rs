@@ -150,7 +150,7 @@ impl Seen {
             let corners = indices[number].map(|corner| mesh.vertices()[corner as usize]);
             seen.fill(view, &corners, cut_z_m, |seen, at, near_m| {
                 let (row, column) = (at / seen.width, at % seen.width);
-                let is_dot = column % PERIOD == 0 && (row + 2 * (column / PERIOD % 2)) % PERIOD == 0;
+                let is_dot = column.is_multiple_of(PERIOD) && (row + 2 * (column / PERIOD % 2)).is_multiple_of(PERIOD);
                 if is_dot && near_m > seen.near_m[at] {
                     seen.inks[at] = VEIL;
                 }
@@ -218,7 +218,9 @@ impl Seen {
                 }
             }
         }
-        dark.into_iter().for_each(|at| self.inks[at] = OUTLINE);
+        for at in dark {
+            self.inks[at] = OUTLINE;
+        }
     }
 
     /// Contour lines at whole multiples of a step of how near the surface is: of its height, seen from above.
@@ -238,7 +240,9 @@ impl Seen {
                 }
             }
         }
-        lines.into_iter().for_each(|at| self.inks[at] = CONTOUR);
+        for at in lines {
+            self.inks[at] = CONTOUR;
+        }
     }
 
     /// Whether a point is behind a facet that is seen.

@@ -11,7 +11,7 @@ use super::{
     mesh_raster::{Seen, View, Window},
     mesh_table,
     palette::{AXIS, BLUE, GREEN, ORANGE, PURPLE, RIGHT_MM, SKY, SMALL_MM, VERMILION, WHITE},
-    picture::MARGIN_MM,
+    picture::{MARGIN_MM, paragraph},
     sheet::{Anchor, Hang, Label, Pen, Place, Sheet, SheetImage},
     ticks::short,
 };
@@ -75,6 +75,8 @@ const TALL_MM: f64 = 110.0;
 const PIECES: u32 = 64;
 /// What is shown around the paths, as a share of their greatest extent.
 const MARGIN: f64 = 0.3;
+/// Room beside what is shown, as a share of its extent.
+const BESIDE: f64 = 0.04;
 /// Above this number of hops only some of the landings have their number.
 const MOST_NUMBERED: usize = 12;
 /// The colours of paths.
@@ -170,13 +172,7 @@ impl MeshRouteFigure<'_> {
     /// The oblique view; returns where it ends.
     fn oblique(&self, sheet: &mut Sheet, around: &Around, flights: &[Vec<Vec<Point3<f64>>>], top_mm: f64) -> f64 {
         let view = View::from_deg(self.seen_from.azimuth_deg, self.seen_from.elevation_deg);
-        let corners = (0..8).map(|corner| {
-            let end = |axis: usize| if corner >> axis & 1 == 0 { around.low[axis] } else { around.high[axis] };
-            view.of(&Point3::new(end(0), end(1), end(2)))
-        });
-        let (low, high) = corners.fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), at| {
-            ([low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])])
-        });
+        let (low, high) = self.extent(&view, around, flights);
         let wide_mm = RIGHT_MM - MARGIN_MM;
         let mm_per_m = (wide_mm / (high[0] - low[0])).min(TALL_MM / (high[1] - low[1]));
         let left_mm = MARGIN_MM + 0.5 * (wide_mm - (high[0] - low[0]) * mm_per_m);
@@ -186,21 +182,41 @@ impl MeshRouteFigure<'_> {
         let panel = Panel { left: left_mm, top: top_mm, right: left_mm + width_mm, bottom: top_mm + height_mm };
         for (number, route) in flights.iter().enumerate().rev() {
             let pen = Self::pen(number);
-            route.iter().for_each(|hop| draw_flight(sheet, (&view, &window, &seen), hop, pen));
+            for hop in route {
+                draw_flight(sheet, (&view, &window, &seen), hop, pen);
+            }
         }
         self.symbols(sheet, (&view, &window, &seen), flights);
         compass(sheet, &view, (panel.left + 9.0, panel.bottom - 8.0));
         let SeenFrom { azimuth_deg, elevation_deg } = self.seen_from;
-        let bar_end_mm = scale_bar(sheet, (MARGIN_MM, top_mm - 3.0), mm_per_m, 0.3 * wide_mm);
+        scale_bar(sheet, (MARGIN_MM, top_mm - 3.0), mm_per_m, 0.3 * wide_mm);
+        sheet.images.push(SheetImage { left_mm, top_mm, width_mm, height_mm, pixels: seen.into_pixels() });
+        panel.outline(sheet);
         let text = format!(
-            "across the view; seen from azimuth {} deg (clockwise from north, +y), {} deg above the horizontal",
+            "Oblique view, seen from azimuth {} deg (clockwise from north, +y), {} deg above the horizontal; the scale is that of lengths across the \
+             view. Dots: facets seen from behind.",
             short(azimuth_deg),
             short(elevation_deg)
         );
-        sheet.label(Label::new(text, (bar_end_mm + 2.0, top_mm - 3.0), SMALL_MM));
-        sheet.images.push(SheetImage { left_mm, top_mm, width_mm, height_mm, pixels: seen.into_pixels() });
-        panel.outline(sheet);
-        panel.bottom
+        paragraph(sheet, &text, SMALL_MM, false, panel.bottom + 1.0)
+    }
+
+    /// The lower left and the upper right end of what is shown in a view: the corners of facets around the paths, and the flights.
+    fn extent(&self, view: &View, around: &Around, flights: &[Vec<Vec<Point3<f64>>>]) -> ([f64; 2], [f64; 2]) {
+        let is_shown = |at: &&Point3<f64>| (0..3).all(|axis| (around.low[axis]..=around.high[axis]).contains(&at[axis]));
+        let corners = self.mesh.vertices().iter().filter(is_shown);
+        let ends = [&self.start, &self.goal].into_iter().chain(&self.nearest);
+        let (low, high) = corners
+            .chain(flights.iter().flatten().flatten())
+            .chain(ends)
+            .map(|point| view.of(point))
+            .fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), at| {
+                ([low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])])
+            });
+        let beside_m = BESIDE * (high[0] - low[0]).max(high[1] - low[1]).max(f64::MIN_POSITIVE);
+        // A plate with its corners far away has none around the paths.
+        let beside_m = if beside_m > f64::MIN_POSITIVE { beside_m } else { 0.5 * (around.high - around.low).amax() };
+        (low.map(|end| end - beside_m), high.map(|end| end + beside_m))
     }
 
     /// Landings with their numbers, start and goal.
@@ -211,9 +227,9 @@ impl MeshRouteFigure<'_> {
                 let at = view.of(landing);
                 let pen = Self::pen(number);
                 if depth.hides(at) {
-                    sheet.ring(window.place(at), 0.55, hidden(pen))
+                    sheet.ring(window.place(at), 0.55, hidden(pen));
                 } else {
-                    sheet.dot(window.place(at), 0.6, pen.colour)
+                    sheet.dot(window.place(at), 0.6, pen.colour);
                 }
             }
         }

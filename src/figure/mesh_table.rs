@@ -41,8 +41,8 @@ pub(super) fn draw(sheet: &mut Sheet, name: &str, path: &HopPath, top_mm: f64) -
     };
     row(COLUMNS.map(|(name, ..)| name.to_owned()), y);
     row(COLUMNS.map(|(_, unit, _)| unit.to_owned()), y + ROW_MM);
-    y += 2.0 * ROW_MM;
-    let rule_mm = y - 0.2;
+    y += 2.0 * ROW_MM + 0.6;
+    let rule_mm = y - 0.7;
     let last = path.hops.len();
     for (number, hop) in (1..).zip(&path.hops).filter(|(number, _)| number % every == 0 || *number == last) {
         let at = hop.landing.point_m;

@@ -5,9 +5,10 @@ use std::{path::Path, time::Duration};
 use nalgebra::Point3;
 
 use super::{
-    Front, FrontProblem, MeshHopError,
+    Defect, Front, FrontProblem, MeshHopError,
     free_front::are_the_same,
     front::{amount_row, front_commands, front_hops_max},
+    mesh_flown::flown_again,
     mesh_hop::{check_keys, mesh_ground},
 };
 use crate::{
@@ -92,6 +93,9 @@ pub enum MeshRouteError {
         "a hop of the planned path is not feasible over the mesh; this is a defect of chta, please report it with the scenario"
     )]
     Lost,
+    /// A path that breaks a limit when it is flown again.
+    #[error(transparent)]
+    Defect(#[from] Defect),
     /// It was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -154,6 +158,7 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
     let grown = grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?;
     let facets = [sampler.facet_count(), sampler.turned()];
     let path = grown.route.path.as_ref().map(|found| hops_of_path(&ground, &grown, found)).transpose()?;
+    path.as_ref().map(|path| flown_again(&ground, &grown, stand_off_m, path)).transpose()?;
     warnings.extend(path.iter().flat_map(|path| scenario.path_warnings(path)));
     warnings.extend(left_out(scenario, &grown, facets));
     let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends));
@@ -244,7 +249,7 @@ fn answer(
         propellant_shortage,
         roadmap: RoadmapRecord::new(grown, &objective, facets),
         gap: gap.map(Into::into),
-        verified: None,
+        verified: path.map(|_| true),
         path: path.map(|path| HopRecord::rows(path, None)).unwrap_or_default(),
         totals: path.map(|path| TotalsRecord::from(&path.totals)),
         front: None,

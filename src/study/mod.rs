@@ -38,6 +38,7 @@ mod journey_path;
 pub mod map;
 mod measured;
 mod mesh_flaws;
+mod mesh_flown;
 mod mesh_hop;
 mod mesh_route;
 mod nodes;

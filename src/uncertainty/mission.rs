@@ -61,6 +61,8 @@ pub struct MeshAims {
     pub contacts: Vec<(MeshContact, u64)>,
     /// Which arc of a window is flown.
     pub choice: TakeoffChoice,
+    /// The ground under the limits that planning may use.
+    pub ground: MeshGround,
 }
 
 impl Mission {
@@ -112,7 +114,8 @@ impl Mission {
                 let _ = write!(digest, "{to_go:?}");
             }
             Some(Replanning::Contacts(aims)) => {
-                let _ = write!(digest, "{aims:?}");
+                let MeshAims { contacts, choice, ground } = aims.as_ref();
+                let _ = write!(digest, "{contacts:?}{choice:?}{:?}", ground.envelope());
             }
             None => {}
         }

@@ -419,7 +419,7 @@ fn mesh_plan(mission: &Mission, ground: &MeshGround) -> Result<Plan<MeshPosition
     let replan: Option<Box<dyn Replan<MeshPosition>>> = match &mission.replanning {
         // A hop to a contact has no nearest command in steps here.
         Some(Replanning::Contacts(contacts)) if ground.hopper().limits().steps.is_continuous() => {
-            Some(Box::new(ContactReplan::new(ground.clone(), contacts)))
+            Some(Box::new(ContactReplan::new(contacts)))
         }
         _ => None,
     };

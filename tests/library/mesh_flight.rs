@@ -234,7 +234,11 @@ fn mission(ground: &MeshGround, choice: TakeoffChoice) -> Mission {
     assert!(execution.passes(), "{:#?}", execution.violations);
     let aims = contacts.iter().zip([3, 2, 1, 0]).map(|(contact, hops)| (contact.clone(), hops)).collect();
     let (start, goal) = (contacts[0].at_m(0.0), contacts[3].at_m(path.hops[2].landing.along_m));
-    Mission::over_mesh(ground.clone(), path, start, goal).with_replanning_to_contacts(MeshAims { contacts: aims, choice })
+    Mission::over_mesh(ground.clone(), path, start, goal).with_replanning_to_contacts(MeshAims {
+        contacts: aims,
+        choice,
+        ground: ground.clone(),
+    })
 }
 
 /// Without errors every trial reaches the goal, by the plan and replanned, whichever arc of a window is flown: grazing ones too.

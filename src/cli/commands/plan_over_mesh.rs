@@ -17,17 +17,16 @@ use crate::cli::{
 /// Plans a free route over a mesh.
 pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
     let refused = [
-        ("--plot", args.plot.is_some(), "draws a path along its profile"),
         ("--geojson", args.geojson.is_some(), "writes a path on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
         ("--plot-front", args.plot_front.is_some(), "draws a front over a DEM or a profile"),
         ("--prove", args.prove.prove, "bounds the hops along a profile"),
-        ("--verify", args.verify, "flies a path again over a DEM or a profile"),
     ];
     if let Some((option, _, what)) = refused.into_iter().find(|(_, given, _)| *given) {
         let message = format!("{option}: found this option, which {what}, and this terrain is a mesh: leave the option out");
         return Err(Failure::message(message));
     }
+    let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let mut table = Table::begin(args.output.as_deref(), TableFormat::Csv)?;
     let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: args.front()? };
     let routed = mesh_route(&question, &Progress::new(args.common.quiet)).map_err(|error| Failure::about(&input.mesh, &error))?;
@@ -38,6 +37,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
         csv: &|out| write_path_csv(&routed.answer.path, MapKnowledge::Metres, out),
     };
     let mut files = Files::default();
+    files.picture(plot, || Some(routed.picture(&input.scenario)))?;
     files.table(&mut table, &views)?;
     files.finish()?;
     views.show(args.answer.format, table.to_stdout)?;

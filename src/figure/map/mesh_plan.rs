@@ -51,7 +51,9 @@ pub(in super::super) fn draw_mesh_plan(sheet: &mut Sheet, plan: &MeshPlan<'_>, t
     for (path, pen) in &plan.paths {
         let points: Vec<_> = path.iter().map(|at| map.place(*at)).collect();
         sheet.line(points.clone(), Pen { colour: WHITE, width_mm: 3.0 * pen.width_mm });
-        points.iter().for_each(|at| sheet.dot(*at, 0.55, pen.colour));
+        for at in &points {
+            sheet.dot(*at, 0.55, pen.colour);
+        }
         sheet.line(points, *pen);
     }
     let landings: Vec<Vec<MapPoint>> = plan.paths.iter().map(|(path, _)| path.clone()).collect();

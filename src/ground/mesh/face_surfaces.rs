@@ -66,7 +66,15 @@ impl MeshGround {
             return Err(UnknownGroup { name: name.clone(), known });
         }
         self.faces = surfaces(faces, &self.surface, groups, derating);
+        self.groups = Arc::new(groups.clone());
         Ok(self)
+    }
+
+    /// The same ground with the surfaces that another one of the same mesh has for its groups, with the whole of their friction.
+    pub(super) fn with_groups_of(mut self, other: &Self) -> Self {
+        self.faces = surfaces(self.tree.mesh().faces(), &self.surface, &other.groups, &Derating::NONE);
+        self.groups = Arc::clone(&other.groups);
+        self
     }
 
     /// The surface of a facet.

@@ -60,6 +60,8 @@ pub struct MeshGround {
     stand_off_m: f64,
     /// Of every kind of face.
     faces: Arc<[FaceSurface]>,
+    /// What a scenario names.
+    groups: Arc<FaceGroups>,
 }
 
 /// The course of a hop between two contacts of a mesh.
@@ -96,7 +98,7 @@ impl MeshGround {
         let tree: Arc<MeshTree> = tree.into();
         let faces = surfaces(tree.mesh().faces(), surface, &FaceGroups::new(), &Derating::NONE);
         let envelope = FlightEnvelope::new(hopper, gravity);
-        Ok(Self { tree, envelope, surface: *surface, friction_error: 0.0, stand_off_m: 0.0, faces })
+        Ok(Self { tree, envelope, surface: *surface, friction_error: 0.0, stand_off_m: 0.0, faces, groups: Arc::default() })
     }
 
     /// The mesh.

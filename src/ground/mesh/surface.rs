@@ -1,13 +1,15 @@
 //! A mesh as a ground among others: the facts that the checker and trials ask for.
 
+use std::sync::Arc;
+
 use nalgebra::{Point3, Vector2, Vector3};
 
 use super::{BALL_STAND_OFF, MeshContact, MeshGround};
 use crate::{
-    chain::SegmentConstraints,
+    chain::{ConstraintProblem, SegmentConstraints},
     ground::{ContactPoint, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Triangulated, Windows, dem::rest_slope},
     quantity::FacetId,
-    world::{Contact, Direction, FrictionCone, Gravity, Hopper},
+    world::{Contact, Direction, FrictionCone, Gravity, Hopper, SurfaceProperties},
 };
 
 /// A point of the surface of a mesh.
@@ -39,6 +41,15 @@ impl MeshGround {
     #[must_use]
     pub fn standing_off(self, stand_off_m: f64) -> Self {
         Self { stand_off_m, ..self }
+    }
+
+    /// The same mesh under other limits, with the whole friction of its groups.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn under(&self, hopper: &Hopper, gravity: Gravity, surface: &SurfaceProperties) -> Result<Self, ConstraintProblem> {
+        let bare = Self::new(Arc::clone(&self.tree), hopper, gravity, surface)?;
+        Ok(bare.with_groups_of(self).standing_off(self.stand_off_m))
     }
 
     /// The facets that rule a position: those that meet there, or at the point of the surface that it stands off.

@@ -87,6 +87,7 @@ impl Cut {
 
 /// The flight over one place of a cut.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_field_names, reason = "all are lengths in m")]
 struct Sample {
     distance_m: f64,
     /// Height of the flight over the cut, m.
