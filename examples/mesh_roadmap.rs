@@ -6,6 +6,8 @@
 //! a second of all threads (`RAYON_NUM_THREADS=1` for one), the shortest arcs and their hops, and the fewest hops and their arcs. A last
 //! line has the number of contacts at which the first path was found by adding one eighth at a time, as the mean of the seeds.
 
+#![expect(clippy::print_stdout, reason = "the figures are its output")]
+
 use std::{error::Error, path::Path, time::Instant};
 
 use chta::{

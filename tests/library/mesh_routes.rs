@@ -1,6 +1,10 @@
 //! Free routes over the meshes of the paper on ballistic planning, with its frictions and speeds: each is found, and each hop of it is one.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its scenario should stop")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "a test that cannot prepare its scenario stops, and one without its meshes says so"
+)]
 
 use std::path::Path;
 
@@ -59,7 +63,7 @@ fn planned(scene: &Scene, (friction, speed_m_s, contacts): (f64, f64, usize)) ->
 fn the_scenes_of_the_paper_are_planned() {
     for scene in &SCENES {
         if !Path::new("../shared/mesh").join(scene.file).exists() {
-            println!("skipped: ../shared/mesh/{} is absent", scene.file);
+            eprintln!("skipped: ../shared/mesh/{} is absent", scene.file);
             continue;
         }
         for row in scene.rows {
