@@ -233,6 +233,9 @@ pub trait Triangulated: Surface {
     /// Visits every triangle that meets a box, given by its lower and its upper corner, and perhaps some beside it; in any order.
     fn visit_triangles(&self, within: [Point3<f64>; 2], visit: &mut dyn FnMut(FacetId, &[Point3<f64>; 3]));
 
+    /// The triangle nearest to a point, and how far away it is, m.
+    fn nearest_m(&self, to: &Point3<f64>) -> (FacetId, f64);
+
     /// The triangles that meet at a contact.
     fn touching(&self, at: &Self::Contact) -> Vec<FacetId>;
 

@@ -26,12 +26,12 @@ pub(super) fn flown_again(ground: &MeshGround, grown: &GrownRoadmap, stand_off_m
 
 impl MeshRouted {
     /// The path as a mission for trials, with the whole limits of a scenario, replanned under those of the plan: from where the hopper is,
-    /// to the contact of the roadmap with the fewest hops to the goal that one hop reaches. `None` without a path.
+    /// to the contact of the roadmap with the fewest hops to the goal that one hop reaches. `None` without a path, and for a ball, of which trials do not follow the first contact.
     ///
     /// # Errors
     /// [`ConstraintProblem`], where the surface states no grip, or the hopper no speeds.
     pub fn mission(&self, scenario: &Scenario) -> Result<Option<Mission>, ConstraintProblem> {
-        let Some(path) = self.path.clone() else { return Ok(None) };
+        let Some(path) = self.path.clone().filter(|_| self.ground.radius_m() == 0.0) else { return Ok(None) };
         let roadmap = &self.grown.roadmap;
         let planning = self.ground.clone().standing_off(scenario.mesh_search.stand_off_m.unwrap_or(0.0));
         let ground = planning.under(&scenario.hopper.with_any_command(), scenario.body.gravity, &scenario.surface)?;

@@ -141,11 +141,7 @@ impl MeshGround {
             let (nearest_m, distance_m) = (nearest.point, nearest.distance_m);
             return Err(NoMeshContact::InsideRock { point_m: at, nearest_m, distance_m });
         }
-        let facets: Vec<MeshContactFacet> = tree
-            .touching(nearest.point)
-            .into_iter()
-            .map(|id| self.contact_facet(id))
-            .collect();
+        let facets: Vec<MeshContactFacet> = tree.touching(nearest.point).into_iter().map(|id| self.contact_facet(id)).collect();
         let mean: Vector3<f64> = facets.iter().map(|facet| facet.normal).sum();
         if let Some(outwards) = mean.try_normalize(1.0e-6)
             && tree.is_buried(nearest.point + outwards * (16.0 * tree.resolution_m()))

@@ -83,7 +83,7 @@ impl MeshGround {
 
     /// Whether a facet holds a take-off.
     fn holds_on_facet(&self, facet: FacetId, liftoff: &LiftoffVelocity) -> bool {
-        if Self::is_kept_out(facet) || self.rests(facet).is_err() {
+        if self.is_kept_out(facet) || self.rests(facet).is_err() {
             return false;
         }
         match self.friction_now(facet) {
@@ -97,7 +97,7 @@ impl MeshGround {
     /// Whether a facet holds a landing.
     fn check_facet(&self, facet: FacetId, touchdown: &TouchdownState) -> Result<(), ContactFailure> {
         let limits = self.hopper().limits();
-        if Self::is_kept_out(facet) {
+        if self.is_kept_out(facet) {
             return Err(ContactFailure::OffLimits);
         }
         if touchdown.is_over(limits.arc_landing_speed_max_m_s()) {
@@ -268,7 +268,7 @@ impl FirstContact for MeshGround {
     }
 
     fn check_bounce(&self, _end: &MeshPosition, facet: &FacetId, touchdown: &TouchdownState) -> Result<(), ContactFailure> {
-        if Self::is_kept_out(*facet) {
+        if self.is_kept_out(*facet) {
             return Err(ContactFailure::OffLimits);
         }
         if touchdown.is_over(self.hopper().limits().landing_speed_max_m_s) { Err(ContactFailure::TooFast) } else { Ok(()) }
@@ -292,7 +292,7 @@ impl FirstContact for MeshGround {
         let by = heading * along_m + Vector2::new(-heading.y, heading.x) * left_m;
         let position = self.moved(from, Vector3::new(by.x, by.y, 0.0)).ok_or(ContactFailure::OffLimits)?;
         for facet in self.facets_at(&position) {
-            if Self::is_kept_out(facet) {
+            if self.is_kept_out(facet) {
                 return Err(ContactFailure::OffLimits);
             }
             self.rests(facet)?;

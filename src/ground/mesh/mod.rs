@@ -27,8 +27,8 @@ mod takeoff_set;
 pub use ball::BALL_STAND_OFF;
 pub use blocked::BlockedSpan;
 pub use contact::{MeshContact, MeshContactFacet, NoMeshContact};
-pub use surface::MeshPosition;
 pub use face_surfaces::UnknownGroup;
+pub use surface::MeshPosition;
 pub use takeoff_set::{MeshConflict, MeshTakeoffSet, MeshWindow, MeshWindowEnd};
 
 use std::{ops::ControlFlow, sync::Arc};

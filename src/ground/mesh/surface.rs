@@ -167,6 +167,11 @@ impl Triangulated for MeshGround {
         self.tree.visit(meets, visit);
     }
 
+    fn nearest_m(&self, to: &Point3<f64>) -> (FacetId, f64) {
+        let nearest = self.tree.nearest(*to);
+        (nearest.facet, nearest.distance_m)
+    }
+
     fn touching(&self, at: &MeshPosition) -> Vec<FacetId> {
         self.facets_at(at)
     }

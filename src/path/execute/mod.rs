@@ -91,7 +91,8 @@ pub fn execute<S: Profiles>(surface: &S, path: &HopPath, ends: Option<(S::Contac
 ///
 /// The checks are those of [`execute()`]. Both contacts of a hop have to lie on the surface, and obey all facets that meet there, in three
 /// dimensions. Every facet that a small step of the flight comes near is cut by the vertical plane of the flight: the flight has to pass
-/// over the cut or under it as a whole, at least the clearance away, and not through an edge that two facets share.
+/// over the cut or under it as a whole, at least the clearance away, and not through an edge that two facets share. A ball, in small steps,
+/// comes no nearer to the mesh than its radius.
 ///
 /// The tolerance of a distance from a facet is that of the position and the [resolution](Surface::resolution_m) of the mesh. A footprint
 /// is not fitted over a mesh: a hopper that has one violates its limit.

@@ -22,6 +22,9 @@ use crate::{
 /// Steps after the planned landing get longer by this factor: a hop of a millimetre may miss into a pit of a kilometre.
 const LONGER: f64 = 1.5;
 
+/// Steps of a flight at which the distance of a ball from the mesh is looked at.
+const STEPS_OF_BALL: u32 = 512;
+
 /// The most steps after the planned landing.
 const STEPS_BEYOND: u32 = 400;
 
@@ -160,6 +163,9 @@ pub(super) fn fly<S: Triangulated>(course: &Course<'_, S>) -> Option<Flight> {
     let cuts = flown.cuts(&states);
     let between: Vec<Cut> = cuts.iter().filter_map(|cut| cut.between(near_m, course.run_m - near_m)).collect();
     let early_m = flown.look_at_cuts(&mut flight, &between, &states);
+    if let Some(radius_m) = course.surface.hopper().limits().radius_m.filter(|radius_m| *radius_m > 0.0) {
+        flown.ball(&mut flight, radius_m);
+    }
     let over_m = (landing.away_m.z - rise_m) / libm::hypot(1.0, climb_m_s / across_m_s);
     flight.hits = early_m.is_none() && over_m.abs() <= place_tolerance_m;
     let at_distance = |distance_m: f64| course.point(distance_m, flown.at(distance_m).away_m.z);
@@ -324,6 +330,22 @@ impl<S: Triangulated> Flown<'_, S> {
             }
         }
         first_m.into_iter().chain(self.through_edge(flight, touches)).reduce(f64::min)
+    }
+
+    /// A ball comes no nearer to any facet than its radius, on every side of it: looked at in steps, where it is nearest.
+    fn ball(&self, flight: &mut Flight, radius_m: f64) {
+        let steps = f64::from(STEPS_OF_BALL);
+        let distances_m = (0..=STEPS_OF_BALL).map(|step| self.course.run_m * (f64::from(step) / steps));
+        let nearest = distances_m.map(|distance_m| {
+            let (facet, away_m) = self.course.surface.nearest_m(&(self.course.hop.takeoff.point_m + self.at(distance_m).away_m));
+            (distance_m, facet, away_m)
+        });
+        let Some((distance_m, facet, away_m)) = nearest.min_by(|a, b| a.2.total_cmp(&b.2)) else { return };
+        if away_m < radius_m - self.slack_m {
+            let x_m = self.course.point(distance_m, 0.0).x_m;
+            let over = Clearance { vertex: None, facet: Some(facet), x_m, height_m: away_m };
+            flight.too_low.push(TooLow { over, required_m: radius_m });
+        }
     }
 
     /// A flight that touches the ends of two cuts at one place from opposite sides passes through the edge that they share.
