@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    DeratingRecord, HopRecord, MeshContactRecord, ObjectiveRecord, TotalsRecord,
+    DeratingRecord, FrontRecord, FrontSearchRecord, HopRecord, MeshContactRecord, ObjectiveRecord, TotalsRecord, amount_front_text,
     limit_counts::LimitCounts,
     objective_record::AmountRecord,
     propellant_record::PropellantShortage,
@@ -54,6 +54,12 @@ pub struct MeshPlanAnswer {
     pub path: Vec<HopRecord>,
     /// The sums over the path; null without one.
     pub totals: Option<TotalsRecord>,
+    /// The front of hops against an amount over these contacts, in ascending order of hops; empty without a path, absent if not requested.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub front: Option<Vec<FrontRecord>>,
+    /// What the front was searched for.
+    #[serde(flatten)]
+    pub front_search: Option<FrontSearchRecord>,
 }
 
 /// The roadmap of a plan over a mesh.
@@ -226,6 +232,9 @@ pub fn mesh_plan_text(answer: &MeshPlanAnswer) -> String {
             Some(true) => "verified: every hop was flown again by direct simulation and breaks no limit\n",
             _ => "not verified: the path was not flown again by direct simulation\n",
         });
+    }
+    if let (Some(front), Some(of)) = (&answer.front, &answer.front_search) {
+        text.push_str(&amount_front_text(front, of));
     }
     text
 }

@@ -146,7 +146,7 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
     match source {
         Some(TerrainSource::Dem { path, .. }) => dem = Some(file(path)),
         Some(TerrainSource::Mesh { path, scale, .. } | TerrainSource::MeshInSpace { path, scale, .. }) => {
-            (mesh, mesh_scale) = (Some(file(path)), Some((*scale).into()))
+            (mesh, mesh_scale) = (Some(file(path)), Some((*scale).into()));
         }
         Some(TerrainSource::Chain { path }) => chain = Some(file(path)),
         None => {}

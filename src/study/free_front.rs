@@ -40,7 +40,7 @@ pub(super) fn free_front(
 }
 
 /// Whether two paths land at the same places and take the same.
-fn are_the_same(first: &HopPath, second: &HopPath) -> bool {
+pub(super) fn are_the_same(first: &HopPath, second: &HopPath) -> bool {
     first.hops.len() == second.hops.len()
         && first.hops.iter().zip(&second.hops).all(|(a, b)| a.landing.point_m == b.landing.point_m)
         && are_alike(&first.amounts(), &second.amounts())

@@ -5,7 +5,9 @@ use std::{path::Path, time::Duration};
 use nalgebra::Point3;
 
 use super::{
-    Defect, MeshHopError,
+    Defect, Front, FrontProblem, MeshHopError,
+    free_front::are_the_same,
+    front::{amount_row, front_commands, front_hops_max},
     mesh_flown::flown_again,
     mesh_hop::{check_keys, mesh_ground},
 };
@@ -15,16 +17,16 @@ use crate::{
     ground::{MeshContact, MeshGround},
     path::{HopPath, path_over_mesh},
     planner::{
-        LabelCap,
+        Amount, LabelCap, Objective,
         roadmap::{
-            ContactSampler, GrownRoadmap, NothingWithin, RoadmapEnd, RoadmapGap, RoadmapLimits, RoadmapQuestion, SpaceBounds,
-            grow_roadmap,
+            ContactSampler, GrownRoadmap, NothingWithin, RoadmapEnd, RoadmapGap, RoadmapLimits, RoadmapPath, RoadmapQuestion,
+            SpaceBounds, grow_roadmap,
         },
     },
     progress::{Cancelled, Progress},
     report::{
-        DeratingRecord, HopRecord, MeshContactRecord, MeshPlanAnswer, ObjectiveRecord, PropellantShortage, RoadmapRecord,
-        TotalsRecord, hops_of,
+        DeratingRecord, FrontRecord, FrontSearchRecord, HopRecord, MeshContactRecord, MeshPlanAnswer, ObjectiveRecord,
+        PropellantShortage, RoadmapRecord, TotalsRecord, hops_of,
     },
     scenario::{Scenario, TerrainSource},
 };
@@ -36,6 +38,8 @@ pub struct MeshRouteQuestion<'a> {
     pub scenario: &'a Scenario,
     /// The folder that its paths start from.
     pub base: &'a Path,
+    /// A front over the contacts of the roadmap.
+    pub front: Option<Front>,
 }
 
 /// Why there is no answer. That there is no path is one.
@@ -45,6 +49,12 @@ pub enum MeshRouteError {
     /// The mesh, its keys, or an end that gives no contact.
     #[error(transparent)]
     Mesh(#[from] MeshHopError),
+    /// A front that the scenario does not have.
+    #[error(transparent)]
+    Front(#[from] FrontProblem),
+    /// A front of hops against risk.
+    #[error("a front of hops against risk is estimated along a profile, expected another amount for a free route over a mesh")]
+    RiskFront,
     /// A terrain that is no mesh as it stands.
     #[error("terrain is no mesh with route = \"free\", expected one for a free route over it")]
     NoMesh,
@@ -116,6 +126,12 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
         return Err(MeshRouteError::NoMesh);
     };
     check_keys(scenario)?;
+    if let Some(front) = question.front {
+        front.check(scenario)?;
+        if front == Front::HOPS_RISK {
+            return Err(MeshRouteError::RiskFront);
+        }
+    }
     let (ground, mut warnings) = mesh_ground(scenario, &question.base.join(file), *scale)?;
     let search = &scenario.mesh_search;
     let given_m = [*start_m, *goal_m];
@@ -141,18 +157,14 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
     };
     let grown = grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?;
     let facets = [sampler.facet_count(), sampler.turned()];
-    let path = match &grown.route.path {
-        None => None,
-        Some(found) => {
-            let contacts: Vec<&MeshContact> = found.contacts.iter().map(|node| grown.roadmap.contact(*node)).collect();
-            Some(path_over_mesh(&ground, &contacts, &found.arcs).ok_or(MeshRouteError::Lost)?)
-        }
-    };
+    let path = grown.route.path.as_ref().map(|found| hops_of_path(&ground, &grown, found)).transpose()?;
     path.as_ref().map(|path| flown_again(&ground, &grown, stand_off_m, path)).transpose()?;
     warnings.extend(path.iter().flat_map(|path| scenario.path_warnings(path)));
     warnings.extend(left_out(scenario, &grown, facets));
     let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends));
-    let answer = answer((scenario, &ground), (given_m, &surface, *scale), (&grown, facets), (path.as_ref(), gap.as_ref()));
+    let front = question.front.map(|front| front_of(scenario, &ground, &grown, (front.amount(), path.as_ref()))).transpose()?;
+    let mut answer = answer((scenario, &ground), (given_m, &surface, *scale), (&grown, facets), (path.as_ref(), gap.as_ref()));
+    (answer.front, answer.front_search) = front.unzip();
     Ok(MeshRouted { ground, grown, path, answer, warnings })
 }
 
@@ -170,6 +182,38 @@ fn on_surface(
         }
         _ => Ok(contact),
     }
+}
+
+/// The hops of a path of the roadmap.
+fn hops_of_path(ground: &MeshGround, grown: &GrownRoadmap, found: &RoadmapPath) -> Result<HopPath, MeshRouteError> {
+    let contacts: Vec<&MeshContact> = found.contacts.iter().map(|node| grown.roadmap.contact(*node)).collect();
+    path_over_mesh(ground, &contacts, &found.arcs).ok_or(MeshRouteError::Lost)
+}
+
+/// The front of hops against an amount over the contacts of the roadmap. `planned`: the path of the plan.
+fn front_of(
+    scenario: &Scenario,
+    ground: &MeshGround,
+    grown: &GrownRoadmap,
+    (amount, planned): (Amount, Option<&HopPath>),
+) -> Result<(Vec<FrontRecord>, FrontSearchRecord), MeshRouteError> {
+    let mut of = FrontSearchRecord { front_amount: amount, front_hops_max: 0, front_labels_capped: false };
+    let Some(fewest) = grown.roadmap.hops_to(grown.ends.1)[grown.ends.0] else { return Ok((Vec::new(), of)) };
+    of.front_hops_max = front_hops_max(scenario, u64::from(fewest));
+    let (commands, takeoff) = front_commands(scenario);
+    #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
+    let budgets = scenario.total_budgets().with(Amount::Hops, of.front_hops_max as f64).unwrap_or(scenario.total_budgets());
+    let objective = Objective::of(amount);
+    let asked = RoadmapQuestion { objective: &objective, budgets: &budgets, commands, takeoff, cap: LabelCap::default() };
+    let (paths, capped) = grown.roadmap.front(ground, grown.ends, (amount, &asked))?;
+    of.front_labels_capped = capped;
+    let mut rows = Vec::with_capacity(paths.len());
+    for path in &paths {
+        let hops = hops_of_path(ground, grown, path)?;
+        let is_planned = planned.is_some_and(|planned| are_the_same(planned, &hops));
+        rows.push(amount_row(amount, (hops_of(&path.totals), &hops), is_planned));
+    }
+    Ok((rows, of))
 }
 
 fn answer(
@@ -208,6 +252,8 @@ fn answer(
         verified: path.map(|_| true),
         path: path.map(|path| HopRecord::rows(path, None)).unwrap_or_default(),
         totals: path.map(|path| TotalsRecord::from(&path.totals)),
+        front: None,
+        front_search: None,
     }
 }
 

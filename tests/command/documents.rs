@@ -85,6 +85,13 @@ pub(crate) fn documents() -> &'static [(String, String)] {
         commands.push("compare data/scenarios/simple.toml data/scenarios/simple_reduced.toml".to_owned());
         commands.push(format!("run data/scenarios/rolling_surely.toml -o {}", file("rolling")));
         commands.push(format!("run data/scenarios/cliff.toml -o {}", file("cliff")));
+        let space = format!(
+            "[body]\ngravity_m_s2 = 9.81\n[hopper]\ntakeoff_speed_max_m_s = 6\nlanding_speed_max_m_s = 6\n[surface]\nfriction_coefficient = 1\n\
+             [terrain]\nmesh = '{}'\nroute = \"free\"\nstart_m = [2, 0, 1]\ngoal_m = [10, 0, 1]\n[search]\ncontacts_max = 60\n",
+            root.join("data/mesh/simple.obj").display()
+        );
+        std::fs::write(file("space.toml"), space).unwrap();
+        commands.push(format!("plan {} --front hops,arc-length", file("space.toml")));
         let pole = root.join("../shared/dem/lola_dem_north.tif");
         if pole.is_file() {
             let by_hops = "--scenario data/scenarios/lunar_rille.toml --accept-map-scale --set hopper.takeoff_speed_max_m_s=100 \

@@ -213,7 +213,7 @@ fn what_a_free_route_cannot_is_refused_with_what_can() {
         (&["check", "free.toml", "--pairs", "pairs.csv", "--prove"], transect),
         (&[&["plan", "free.toml", "--front", "hops,risk"][..], &trials].concat(), transect),
         (&["trade", "free.toml", "--vary", "hopper.takeoff_speed_max_m_s=2:3:2", "--prove"], transect),
-        (&["check", "scenario.toml", "--set", "terrain.route=free"], "terrain is a mesh or a chain, expected a dem"),
+        (&["check", "scenario.toml", "--set", "terrain.route=free"], "terrain is a chain, expected a dem or a mesh"),
         (&["check", "free.toml", "--set", "terrain.via_m=[[103, 204]]"], "terrain.via_m has no meaning beside terrain.route"),
         (&["check", "free.toml", "--set", "search.points_per_segment=3"], "give node_spacing_max_m"),
         (&["check", "free.toml", "--set", "terrain.route=any"], "transect, free"),

@@ -29,6 +29,7 @@ mod map_starts;
 mod maps_command;
 mod measured_errors;
 mod mesh_command;
+mod mesh_plan;
 mod missing_data;
 mod objective;
 mod picture_files;

@@ -46,6 +46,7 @@ mod margins;
 mod mended;
 mod mesh_figure;
 mod mesh_flight;
+mod mesh_routes;
 mod mesh_slices;
 mod mesh_verified;
 mod mesh_windows;

@@ -20,6 +20,24 @@ fn number(min: f64, max: f64) -> BoxedStrategy<String> {
     .boxed()
 }
 
+/// A number above 0 for one of at most 0.
+fn over(text: &str) -> String {
+    format!("{:?}", 1.5 - text.parse::<f64>().unwrap_or(0.0))
+}
+
+/// Whether a key has no meaning for a free route over a mesh.
+fn is_off_a_mesh(key: &Key) -> bool {
+    matches!(
+        (key.table, key.name),
+        ("surface", "keep_out" | "friction_raster")
+            | ("hopper", "footprint_m" | "roughness_max_m")
+            | ("contact", _)
+            | ("terrain", "start_x_m" | "goal_x_m" | "accept_map_scale" | "via_m" | "via_lonlat_deg")
+            | ("search", "points_per_segment" | "node_spacing_max_m" | "split" | "risk" | "risk_extra_hops_max")
+            | ("budget", "estimated_success_min")
+    )
+}
+
 /// A valid value for a key, in TOML.
 fn value(key: &Key) -> BoxedStrategy<String> {
     let two = |min: f64, max: f64| (number(min, max), number(min, max));
@@ -33,6 +51,14 @@ fn value(key: &Key) -> BoxedStrategy<String> {
             })
             .boxed(),
         Kind::MapPoint => two(-1e12, 1e12).prop_map(|(x, y)| format!("[{x}, {y}]")).boxed(),
+        // A third number is added where the scenario has a mesh as it stands.
+        Kind::MapOrSpacePoint => two(-1e12, 1e12).prop_map(|(x, y)| format!("[{x}, {y}]")).boxed(),
+        Kind::SpaceBounds => {
+            let three = || (number(-9.0, 0.0), number(-9.0, 0.0), number(-1e9, 0.0));
+            (three(), three())
+                .prop_map(|((a, b, c), (d, e, f))| format!("[[{a}, {b}, {c}], [{}, {}, {}]]", &over(&d), &over(&e), &over(&f)))
+                .boxed()
+        }
         Kind::LonLat => (number(-180.0, 360.0), number(-90.0, 90.0)).prop_map(|(lon, lat)| format!("[{lon}, {lat}]")).boxed(),
         Kind::LonLats => {
             let place = (number(-180.0, 360.0), number(-90.0, 90.0)).prop_map(|(lon, lat)| format!("[{lon}, {lat}]"));
@@ -77,7 +103,11 @@ fn toml() -> impl Strategy<Value = String> {
     // Which of the mutually exclusive keys may stay.
     let choices = (0..4_u8, any::<bool>(), any::<bool>(), any::<bool>());
     (keys, choices).prop_map(|(keys, (ground, friction, points, degrees))| {
+        // A mesh as it stands, with a free route over it.
+        let in_space = ground == 3 && degrees;
         let kept = |key: &Key| match (key.table, key.name) {
+            _ if in_space && is_off_a_mesh(key) => false,
+            ("search", "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => in_space,
             ("terrain", "dem") => ground == 1,
             ("terrain", "mesh" | "mesh_scale") => ground == 3,
             ("terrain", "start_m" | "goal_m" | "via_m") => (ground == 1 && !degrees) || ground == 3,
@@ -110,6 +140,14 @@ fn toml() -> impl Strategy<Value = String> {
         };
         let mut text = String::new();
         for (key, value) in sensible_hopper(&keys) {
+            let value = match (key.table, key.name) {
+                ("terrain", "mesh") if in_space => Some("\"cave.stl\"".to_owned()),
+                ("terrain", "route") if in_space => Some("\"free\"".to_owned()),
+                ("terrain", "start_m" | "goal_m") if in_space => {
+                    Some(value.map_or("[1.5, -2.0, 3.0]".to_owned(), |pair| pair.replace(']', ", -7.25]")))
+                }
+                _ => value,
+            };
             if let Some(value) = value.filter(|_| kept(key)) {
                 // Dotted keys, so that no table header is needed.
                 let _ = writeln!(text, "{}.{} = {value}", key.table, key.name);
@@ -191,7 +229,8 @@ fn every_key_reaches_the_document() {
         Kind::Number { .. } => "12.5",
         Kind::AngleOrUnlimited => "31.5",
         Kind::AngleRange => "[12.5, 60.25]",
-        Kind::MapPoint | Kind::LonLat => "[12.5, -3.0]",
+        Kind::MapPoint | Kind::MapOrSpacePoint | Kind::LonLat => "[12.5, -3.0]",
+        Kind::SpaceBounds => "[[-1.5, -2.0, -3.0], [1.0, 2.0, 3.5]]",
         Kind::Flag => "true",
         Kind::NumberOrNone => "-9999.5",
         Kind::Speeds => "[2.0, 4.5]",
@@ -218,6 +257,12 @@ fn every_key_reaches_the_document() {
                 with("terrain", "dem", "x.tif");
                 with("terrain", "start_lonlat_deg", "[0, 0]");
                 with("terrain", "goal_lonlat_deg", "[0, 0]");
+            }
+            ("search", "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => {
+                with("terrain", "mesh", "x.obj");
+                with("terrain", "route", "free");
+                with("terrain", "start_m", "[0, 0, 0]");
+                with("terrain", "goal_m", "[0, 0, 1]");
             }
             ("terrain", "mesh" | "mesh_scale") => {
                 with("terrain", "mesh", "x.obj");

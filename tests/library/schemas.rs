@@ -134,6 +134,8 @@ fn value_and_mistake(kind: Kind) -> (Value, Value) {
         Kind::AngleOrUnlimited => (json!("inf"), json!("steep")),
         Kind::AngleRange => (json!([10.0, 80.0]), json!([10.0])),
         Kind::MapPoint => (json!([1.0, -2.0]), json!([1.0, 2.0, 3.0])),
+        Kind::MapOrSpacePoint => (json!([1.0, -2.0, 3.0]), json!([1.0])),
+        Kind::SpaceBounds => (json!([[0.0, -1.0, 2.0], [1.0, 2.0, 3.0]]), json!([[0.0, -1.0], [1.0, 2.0]])),
         Kind::LonLat => (json!([200.0, -80.0]), json!([20.0, 91.0])),
         Kind::Flag => (json!(true), json!("yes")),
         Kind::MapPoints => (json!([[1.0, 2.0], [3.0, 4.0]]), json!([1.0, 2.0])),

@@ -19,7 +19,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
     let refused = [
         ("--geojson", args.geojson.is_some(), "writes a path on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
-        ("--front", args.front.is_some(), "searches the nodes of a DEM or a profile"),
+        ("--plot-front", args.plot_front.is_some(), "draws a front over a DEM or a profile"),
         ("--prove", args.prove.prove, "bounds the hops along a profile"),
     ];
     if let Some((option, _, what)) = refused.into_iter().find(|(_, given, _)| *given) {
@@ -28,7 +28,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
     }
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let mut table = Table::begin(args.output.as_deref(), TableFormat::Csv)?;
-    let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base };
+    let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: args.front()? };
     let routed = mesh_route(&question, &Progress::new(args.common.quiet)).map_err(|error| Failure::about(&input.mesh, &error))?;
     output::warn_all(args.common.quiet, &routed.warnings);
     let views = Views {

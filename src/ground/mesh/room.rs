@@ -49,7 +49,9 @@ impl MeshGround {
                 for end in &mut ends {
                     *end = end.clamp(first.min(last), last.max(first));
                 }
-                ends.iter().for_each(|x_m| add(*x_m, at(*x_m)));
+                for x_m in ends {
+                    add(x_m, at(x_m));
+                }
                 for piece in ends.windows(2).filter(|piece| piece[1] > piece[0]) {
                     let [left_m, right_m] = [piece[0], piece[1]];
                     let clearance = self.envelope().clearance();

@@ -1,6 +1,9 @@
 //! A roadmap as JSON: built once, asked often.
 
-use std::io::{Read, Write};
+use std::{
+    fmt::Write as _,
+    io::{Read, Write},
+};
 
 use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
@@ -142,5 +145,9 @@ fn fingerprint(ground: &MeshGround) -> String {
     }
     // Numbers are printed with all of their digits.
     hash.update(format!("{:?} {:?}", ground.envelope(), ground.surface()));
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hash.finalize().iter().fold(String::new(), |mut text, byte| {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
 }

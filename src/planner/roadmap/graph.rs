@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::{
     ballistics::{LineOfSight, PathBounds},
     ground::{MeshBuffers, MeshContact, MeshGround},
-    progress::{Cancelled, Meter, Progress, Stage},
+    progress::{Cancelled, Detail, Meter, Progress, Stage},
     quantity::SlopeInterval,
 };
 
@@ -112,6 +112,7 @@ impl Roadmap {
     /// A square root for every pair; the windows of those that the greatest speeds may span.
     pub fn extend(&mut self, ground: &MeshGround, contacts: Vec<MeshContact>, progress: &dyn Progress) -> Result<(), Cancelled> {
         let meter = Meter::new(progress, Stage::Search);
+        meter.report(Detail::None)?;
         let known = self.contact_count();
         let mut points: Vec<Point3<f64>> = self.graph.node_weights().map(MeshContact::point_m).collect();
         points.extend(contacts.iter().map(MeshContact::point_m));

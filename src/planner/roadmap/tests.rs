@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its meshes should stop")]
 
+use std::{ops::ControlFlow, sync::atomic::Ordering::Relaxed};
+
 use nalgebra::Point3;
 
 use super::{
@@ -10,8 +12,9 @@ use super::{
 use crate::{
     ballistics::TakeoffChoice,
     draw::Draw,
-    ground::{MeshContact, MeshGround},
+    ground::{MeshContact, MeshGround, MeshTakeoffSet},
     planner::{Amount, Amounts, Budgets, LabelCap, Objective, SearchedCommands},
+    progress::{Progress, Step},
     terrain::{Mesh, MeshTree},
     world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
@@ -144,7 +147,7 @@ fn every_window_of_every_pair_is_an_edge() {
     for (from, takeoff) in contacts.iter().enumerate() {
         for (to, landing) in contacts.iter().enumerate().filter(|(to, _)| *to != from) {
             let set = ground.takeoff_set(takeoff, landing);
-            let expected: Vec<_> = set.iter().flat_map(|set| set.windows()).map(|window| window.lofts).collect();
+            let expected: Vec<_> = set.iter().flat_map(MeshTakeoffSet::windows).map(|window| window.lofts).collect();
             let found = roadmap.windows_between(from, to);
             assert_eq!(found.len(), expected.len(), "{from} to {to}");
             for (found, expected) in found.iter().zip(&expected) {
@@ -240,6 +243,30 @@ fn a_slot_that_sampled_angles_miss_is_passed() {
     assert_eq!(path.contacts, [0, 1]);
     let height_m = path.arcs[0].height_at_m(1.0);
     assert!((1.21..=1.48).contains(&height_m), "{height_m} m in the slot");
+}
+
+/// Cancels at the first report, or at the second.
+struct After(std::sync::atomic::AtomicU64);
+
+impl Progress for After {
+    fn report(&self, _: &Step) -> ControlFlow<()> {
+        let left = self.0.fetch_update(Relaxed, Relaxed, |left| left.checked_sub(1));
+        if left.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    }
+}
+
+#[test]
+fn a_cancelled_roadmap_is_as_it_was() {
+    let ground = ground(boxes(&mut Draw::seeded(1806), 5), 5.0, 0.9, 5.0);
+    let (first, second) = (contacts(&ground, 20, 0), contacts(&ground, 400, 1));
+    let mut roadmap = Roadmap::new();
+    roadmap.extend(&ground, first, &()).unwrap();
+    let before = (roadmap.contact_count(), roadmap.window_count(), roadmap.pairs_tested());
+    for reports in [0, 1] {
+        let cancelled = roadmap.extend(&ground, second.clone(), &After(reports.into()));
+        assert!(cancelled.is_err(), "after {reports} reports");
+        assert_eq!((roadmap.contact_count(), roadmap.window_count(), roadmap.pairs_tested()), before);
+    }
 }
 
 #[test]

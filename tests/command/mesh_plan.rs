@@ -1,0 +1,165 @@
+//! Free routes over a mesh, as a user sees them.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
+
+use std::fmt::Write as _;
+
+use serde_json::Value;
+
+use crate::desk::Desk;
+
+/// A room with a wall across it, and a window in the wall; start and goal on either side.
+const SCENARIO: &str = "[body]\ngravity_m_s2 = 9.81\n[hopper]\ntakeoff_speed_max_m_s = 6\nlanding_speed_max_m_s = 6\n\
+    [surface]\nfriction_coefficient = 1.0\n[terrain]\nmesh = \"room.obj\"\nroute = \"free\"\nstart_m = [1, 1, 0.2]\ngoal_m = [7, 3, 0.1]\n\
+    [search]\ncontacts_max = 120\nobjective = [\"hops\", \"arc-length\"]\n";
+
+fn quad(text: &mut String, corners: [[f64; 3]; 4]) {
+    for [x, y, z] in corners {
+        let _ = writeln!(text, "v {x} {y} {z}");
+    }
+    text.push_str("f -4 -3 -2 -1\n");
+}
+
+/// A floor and a ceiling of 8 m by 4 m, 3 m apart; a wall half-way, open from `low` to `high`; and a closed box on the floor.
+fn room(low: f64, high: f64) -> Desk {
+    let mut text = String::new();
+    quad(&mut text, [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 4.0, 0.0], [0.0, 4.0, 0.0]]);
+    quad(&mut text, [[0.0, 0.0, 3.0], [0.0, 4.0, 3.0], [8.0, 4.0, 3.0], [8.0, 0.0, 3.0]]);
+    quad(&mut text, [[4.0, -9.0, -1.0], [4.0, 9.0, -1.0], [4.0, 9.0, low], [4.0, -9.0, low]]);
+    quad(&mut text, [[4.0, -9.0, high], [4.0, 9.0, high], [4.0, 9.0, 4.0], [4.0, -9.0, 4.0]]);
+    let [a, b, c, d] = [[5.0, 0.5], [6.0, 0.5], [6.0, 1.5], [5.0, 1.5]].map(|[x, y]| move |z: f64| [x, y, z]);
+    quad(&mut text, [a(1.0), b(1.0), c(1.0), d(1.0)]);
+    quad(&mut text, [a(-0.5), d(-0.5), c(-0.5), b(-0.5)]);
+    quad(&mut text, [a(-0.5), b(-0.5), b(1.0), a(1.0)]);
+    quad(&mut text, [b(-0.5), c(-0.5), c(1.0), b(1.0)]);
+    quad(&mut text, [c(-0.5), d(-0.5), d(1.0), c(1.0)]);
+    quad(&mut text, [d(-0.5), a(-0.5), a(1.0), d(1.0)]);
+    let desk = Desk::with_dem();
+    desk.write("room.obj", text);
+    desk.write("room.toml", SCENARIO);
+    desk
+}
+
+#[test]
+fn a_path_goes_through_the_window_and_every_hop_stands_alone() {
+    let desk = room(0.8, 1.2);
+    let document = desk.json(&["plan", "room.toml"]);
+    assert_eq!((&document["schema"], &document["verdict"]), (&"chta/plan-mesh/1".into(), &"traversable".into()));
+    assert_eq!(document["verified"], true);
+    let (path, hops) = (document["path"].as_array().unwrap(), document["hops"].as_u64().unwrap());
+    assert_eq!(path.len() as u64, hops);
+    assert!(document["hops_lower_bound"].as_u64().unwrap() <= hops);
+    assert!((document["start"]["moved_m"].as_f64().unwrap() - 0.2).abs() < 1e-12);
+    let mut through = 0;
+    let mut length_m = 0.0;
+    for hop in path {
+        let number = |key: &str| hop[key].as_f64().unwrap();
+        let place = |end: &str| {
+            format!("{},{},{}", hop[format!("{end}_map_x_m")], hop[format!("{end}_map_y_m")], hop[format!("{end}_z_m")])
+        };
+        let alone = desk.json(&["hop", "room.toml", "--from", &place("takeoff"), "--to", &place("landing")]);
+        assert_eq!(alone["feasible"], true, "{hop}");
+        let angle = number("takeoff_angle_deg");
+        let inside = alone["windows"].as_array().unwrap().iter().any(|window| {
+            let [low, high] = ["takeoff_angle_min_deg", "takeoff_angle_max_deg"].map(|key| window[key].as_f64().unwrap());
+            low - 1e-7 <= angle && angle <= high + 1e-7
+        });
+        assert!(inside, "{angle} deg of {}", alone["windows"]);
+        assert!((number("heading_deg") - alone["heading_deg"].as_f64().unwrap()).abs() < 1e-9);
+        let (from, to) = (number("takeoff_map_x_m"), number("landing_map_x_m"));
+        if (from < 4.0) != (to < 4.0) {
+            through += 1;
+            // The height over the wall, from the stated command alone.
+            let run = number("landing_x_m") - number("takeoff_x_m");
+            let d = run * (4.0 - from) / (to - from);
+            let (sine, cosine) = angle.to_radians().sin_cos();
+            let time = d / (number("takeoff_speed_m_s") * cosine);
+            let height = number("takeoff_z_m") + number("takeoff_speed_m_s") * sine * time - 0.5 * 9.81 * time * time;
+            assert!((0.8 - 1e-9..=1.2 + 1e-9).contains(&height), "{height} m at the wall");
+        }
+        for (margin, value) in hop["margins"].as_object().unwrap() {
+            assert!(value.as_f64().is_none_or(|value| value > -1e-6), "{margin}: {value}");
+        }
+        length_m += number("landing_x_m") - number("takeoff_x_m");
+    }
+    assert_eq!(through, 1);
+    assert!((document["totals"]["ground_distance_m"].as_f64().unwrap() - length_m).abs() < 1e-9);
+    let roadmap = &document["roadmap"];
+    assert!(roadmap["contacts"].as_u64().unwrap() <= 120 && roadmap["left_out_buried"].as_u64().unwrap() > 0, "{roadmap}");
+    let history = roadmap["history"].as_array().unwrap();
+    assert_eq!(history.last().unwrap()["hops"], hops);
+    // The front has the path of the plan, and more hops for less.
+    let fronts = desk.json(&["plan", "room.toml", "--front", "hops,arc-length"]);
+    let front = fronts["front"].as_array().unwrap();
+    assert!(front[0]["planned"] == true && front[0]["hops"] == hops && fronts["front_amount"] == "arc-length", "{front:?}");
+    for pair in front.windows(2) {
+        let [fewer, more] = [0, 1].map(|i| (pair[i]["hops"].as_u64().unwrap(), pair[i]["arc_length_m"].as_f64().unwrap()));
+        assert!(fewer.0 < more.0 && fewer.1 > more.1, "{front:?}");
+    }
+    // The same bytes for one thread and two, and a result repeats itself.
+    let with = |threads: &str| desk.run(&["plan", "room.toml", "--format", "json", "--threads", threads]).stdout;
+    let once = with("1");
+    assert!(once == with("2"));
+    desk.write("result.json", &once);
+    assert!(desk.run(&["plan", "result.json", "--format", "json"]).stdout == once);
+    let text = desk.run(&["plan", "room.toml", "-o", "path.csv"]).stdout;
+    for part in ["over these contacts", "verified: every hop was flown again", "roadmap:", "moved 0.200000 m", "heading"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    assert_eq!(desk.read("path.csv").lines().count(), 1 + path.len());
+}
+
+#[test]
+fn without_a_window_the_answer_is_no_and_says_what_refuses() {
+    let desk = room(1.0, 1.0);
+    let ran = desk.run(&["plan", "room.toml"]);
+    assert_eq!(ran.status, 1, "{ran:?}");
+    for part in
+        ["no-path-found", "this does not prove that no path exists", "the gap is", "terrain", "the goal can be reached from"]
+    {
+        assert!(ran.stdout.contains(part), "{part}: {}", ran.stdout);
+    }
+    let document: Value = serde_json::from_str(&desk.run(&["plan", "room.toml", "--format", "json"]).stdout).unwrap();
+    let gap = &document["gap"];
+    assert!(gap["refusals"]["terrain"].as_u64().unwrap() > 0, "{gap}");
+    assert!(gap["nearest_m"][0].as_f64().unwrap() <= 4.0 && gap["leads_to_goal_from_m"][0].as_f64().unwrap() >= 4.0, "{gap}");
+    // A budget that no path keeps is a no as well.
+    let desk = room(0.8, 1.2);
+    let ran = desk.run(&["plan", "room.toml", "--set", "budget.hops_max=1"]);
+    assert!(ran.status == 1 && ran.stdout.contains("not within its budget"), "{ran:?}");
+}
+
+#[test]
+fn what_has_no_meaning_on_a_mesh_is_refused_by_name() {
+    let desk = room(0.8, 1.2);
+    let rows: [(&[&str], &str); 17] = [
+        (&["--set", "terrain.start_m=[5.5, 1, 0.5]"], "inside a closed body"),
+        (&["--set", "search.bounds_m=[[50, 0, 0], [60, 1, 1]]"], "expected it within search.bounds_m"),
+        (&["--set", "search.bounds_m=[[1, 0, 0], [0, 1, 1]]"], "search.bounds_m is"),
+        (&["--set", "search.stand_off_m=5"], "cannot stand off"),
+        (&["--set", "search.contacts_max=1"], "expected a whole number from 2"),
+        (&["--set", "terrain.start_m=[1, 1]"], "has two numbers, expected three"),
+        (&["--start", "1,1"], "has two numbers, expected three"),
+        (&["--start", "3"], "terrain.start_x_m"),
+        (&["--set", "search.node_spacing_max_m=1"], "search.node_spacing_max_m"),
+        (&["--set", "hopper.footprint_m=0.3"], "hopper.footprint_m"),
+        (&["--set", "surface.keep_out=zones.geojson"], "keep_out"),
+        (&["--set", "search.objective=[\"risk\"]"], "risk"),
+        (&["--set", "terrain.route=transect"], "has three numbers, expected two"),
+        (&["--front", "hops,risk"], "risk"),
+        (&["--prove"], "--prove"),
+    ];
+    for (options, part) in rows {
+        let ran = desk.run(&[&["plan", "room.toml"][..], options].concat());
+        assert!(ran.status == 2 && ran.stderr.contains(part) && ran.stdout.is_empty(), "{options:?}: {ran:?}");
+    }
+    for command in ["check", "simulate"] {
+        let ran = desk.run(&[command, "room.toml"]);
+        assert!(ran.status == 2 && ran.stderr.contains("which a plan alone answers"), "{command}: {ran:?}");
+    }
+    let ran = desk.run(&["plan", "chain.csv", "--set", "search.contacts_max=9", "--body", "moon"]);
+    assert!(ran.status == 2 && ran.stderr.contains("search.contacts_max is for free routes over a mesh"), "{ran:?}");
+    // The command line gives positions in space, and a start on the goal needs no hop.
+    let ran = desk.run(&["plan", "room.toml", "--start", "7,3,0.3", "--goal", "7,3,0"]);
+    assert!(ran.status == 0 && ran.stdout.contains("traversable, 0 hops"), "{ran:?}");
+}
