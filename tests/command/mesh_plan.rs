@@ -132,7 +132,7 @@ fn without_a_window_the_answer_is_no_and_says_what_refuses() {
 #[test]
 fn what_has_no_meaning_on_a_mesh_is_refused_by_name() {
     let desk = room(0.8, 1.2);
-    let rows: [(&[&str], &str); 17] = [
+    let rows: [(&[&str], &str); 15] = [
         (&["--set", "terrain.start_m=[5.5, 1, 0.5]"], "inside a closed body"),
         (&["--set", "search.bounds_m=[[50, 0, 0], [60, 1, 1]]"], "expected it within search.bounds_m"),
         (&["--set", "search.bounds_m=[[1, 0, 0], [0, 1, 1]]"], "search.bounds_m is"),
