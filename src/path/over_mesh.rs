@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// The hops along arcs from each contact of a mesh to the next, with everything that an operator needs; `None` where there are not as many
-/// arcs as hops, or where a hop is none over this mesh.
+/// arcs as hops, or where a hop is not feasible over this mesh.
 pub fn path_over_mesh(ground: &MeshGround, contacts: &[&MeshContact], arcs: &[Arc]) -> Option<HopPath> {
     if contacts.len() != arcs.len() + 1 {
         return None;

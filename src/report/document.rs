@@ -25,6 +25,8 @@ pub enum DocumentKind {
     Run,
     /// Trials along a path: [`SimulateAnswer`](super::SimulateAnswer).
     Simulate,
+    /// Trials along a path over a mesh: [`MeshSimulateAnswer`](super::MeshSimulateAnswer).
+    SimulateMesh,
     /// An experiment with trials: [`ExperimentAnswer`](super::ExperimentAnswer).
     SimulateExperiment,
     /// The least capability: [`RequireAnswer`](super::RequireAnswer).
@@ -43,7 +45,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -52,6 +54,7 @@ impl DocumentKind {
         Self::PlanMesh,
         Self::Run,
         Self::Simulate,
+        Self::SimulateMesh,
         Self::SimulateExperiment,
         Self::Require,
         Self::Trade,
@@ -72,6 +75,7 @@ impl DocumentKind {
             Self::PlanMesh => "plan-mesh",
             Self::Run => "run",
             Self::Simulate => "simulate",
+            Self::SimulateMesh => "simulate-mesh",
             Self::SimulateExperiment => "simulate-experiment",
             Self::Require => "require",
             Self::Trade => "trade",

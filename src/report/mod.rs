@@ -16,6 +16,7 @@ mod limit_pair;
 mod map_answer;
 mod mesh_hop_answer;
 mod mesh_plan_answer;
+mod mesh_simulate_answer;
 mod objective_record;
 mod path_record;
 mod plan_answer;
@@ -23,6 +24,7 @@ mod proof_record;
 mod propellant_record;
 mod reliability_record;
 mod require_answer;
+mod require_text;
 mod route_record;
 mod sensitivity_answer;
 mod sigma_margins;
@@ -61,6 +63,7 @@ pub use mesh_hop_answer::{
 };
 pub(crate) use mesh_plan_answer::hops_of;
 pub use mesh_plan_answer::{MeshPlanAnswer, RoadmapGapRecord, RoadmapRecord, RoadmapRoundRecord, mesh_plan_text};
+pub use mesh_simulate_answer::{MeshSimulateAnswer, mesh_simulate_text};
 pub use objective_record::{AmountRecord, BudgetRecord, ObjectiveRecord};
 pub use path_record::{
     AimRecord, EnergyBasis, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv,
@@ -70,6 +73,7 @@ pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord
 pub use propellant_record::{PropellantShortage, StoresRecord};
 pub use reliability_record::{ReliablePathRecord, SuccessEstimate, reliable_paths_text};
 pub use require_answer::{BudgetsTry, RequireAnswer, RequireBudgetsRecord, RequireSuccessRecord, RequireTry, SuccessTry};
+pub use require_text::require_text;
 pub use route_record::{QuestionRouteRecord, RouteGapRecord, RouteKind, RouteRecord};
 pub use sensitivity_answer::{SensitivityAnswer, SensitivityRow};
 pub use sigma_margins::SigmaMarginsRecord;
@@ -81,6 +85,6 @@ pub use size_answer::{SizeAnswer, SizeRecord};
 pub use success_record::{
     FrontRecord, FrontSearchRecord, FrontSuccess, SuccessBudgetRecord, amount_front_text, estimate_ci95, front_text,
 };
-pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};
+pub use text::{FurtherMeans, check_text, hop_text, path_text};
 pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow, with_unit};
 pub use trajectory::{trajectory_columns, write_trajectory_csv};

@@ -40,13 +40,35 @@ pub struct SuccessRequirement {
     pub success_min_shown: bool,
 }
 
+impl SuccessRequirement {
+    /// Whether trials show a success; without trials nothing is shown.
+    pub fn of(success_min: f64, trials: Option<&SimulationRecord>) -> Self {
+        let low = trials.map(|trials| trials.success_rate_ci95[0]);
+        Self { success_min, success_min_shown: low.is_some_and(|low| low >= success_min) }
+    }
+
+    /// The same as a sentence.
+    pub(super) fn sentence(&self, trials: &SimulationRecord) -> String {
+        let Self { success_min, success_min_shown } = self;
+        let SimulationRecord { success_rate, success_rate_ci95: [low, _], .. } = trials;
+        if *success_min_shown {
+            format!("a success of {success_min} is shown: the lower end of the 95 % interval is {low:.4}\n")
+        } else if success_rate > success_min {
+            format!(
+                "a success of {success_min} is not shown: the lower end of the 95 % interval is {low:.4}, below it; more trials narrow the \
+                 interval\n"
+            )
+        } else {
+            format!("a success of {success_min} is not shown: the lower end of the 95 % interval is {low:.4}, below it\n")
+        }
+    }
+}
+
 impl SimulateAnswer {
     /// The answer to whether this success is shown; `None` asks for nothing. Without trials nothing is shown.
     #[must_use]
     pub fn requiring(mut self, success_min: Option<f64>) -> Self {
-        let low = self.simulation.as_ref().map(|simulation| simulation.success_rate_ci95[0]);
-        self.requirement = success_min
-            .map(|success_min| SuccessRequirement { success_min, success_min_shown: low.is_some_and(|low| low >= success_min) });
+        self.requirement = success_min.map(|success_min| SuccessRequirement::of(success_min, self.simulation.as_ref()));
         self
     }
 
@@ -69,22 +91,6 @@ impl SimulateAnswer {
         }
         sheet.into_text()
     }
-
-    /// Whether the required success is shown, as a sentence.
-    fn requirement_text(&self) -> Option<String> {
-        let SuccessRequirement { success_min, success_min_shown } = self.requirement?;
-        let SimulationRecord { success_rate, success_rate_ci95: [low, _], .. } = self.simulation.as_ref()?;
-        Some(if success_min_shown {
-            format!("a success of {success_min} is shown: the lower end of the 95 % interval is {low:.4}\n")
-        } else if *success_rate > success_min {
-            format!(
-                "a success of {success_min} is not shown: the lower end of the 95 % interval is {low:.4}, below it; more trials narrow the \
-                 interval\n"
-            )
-        } else {
-            format!("a success of {success_min} is not shown: the lower end of the 95 % interval is {low:.4}, below it\n")
-        })
-    }
 }
 
 /// The text of `chta simulate`.
@@ -99,9 +105,9 @@ pub fn simulate_text(answer: &SimulateAnswer, means: FurtherMeans<'_>) -> String
         text.push_str(&record.text());
     }
     text.push_str(&answer.advice_text());
-    if let Some(sentence) = answer.requirement_text() {
+    if let (Some(requirement), Some(simulation)) = (&answer.requirement, &answer.simulation) {
         text.push('\n');
-        text.push_str(&sentence);
+        text.push_str(&requirement.sentence(simulation));
     }
     text
 }

@@ -8,12 +8,12 @@ use super::{
     CATALOGUE, Key, KeyPath, Kind, ProblemKind, ScenarioProblem,
     backslashes::{Backslashed, control_character, line_at, unreadable_lines},
     catalogue::{SPEED_LEAST, SPEED_MOST},
+    face_groups::face_groups,
 };
 use crate::{
     planner::{Amount, Objective},
-    quantity::Angle,
     terrain::NoDataRule,
-    world::{FaceGroup, FaceGroups, FrictionCone, RestSlope, SpeedLevels},
+    world::{FaceGroups, SpeedLevels},
 };
 
 /// The source of a value.
@@ -507,7 +507,7 @@ fn plain(value: &DeValue<'_>) -> Option<toml::Value> {
 
 /// An integer or float as a number.
 #[expect(clippy::cast_precision_loss, reason = "counts and metres stay below 2^53")]
-fn number(value: &toml::Value) -> Option<f64> {
+pub(super) fn number(value: &toml::Value) -> Option<f64> {
     match value {
         toml::Value::Integer(integer) => Some(*integer as f64),
         toml::Value::Float(float) => Some(*float),
@@ -569,32 +569,6 @@ fn objective(value: &toml::Value) -> Option<Objective> {
 /// Whether a number may be a coordinate, m.
 fn is_coordinate(number: f64) -> bool {
     number.abs() <= 1e12
-}
-
-/// Groups of faces; `None` if a key of one is unknown, or has no value that it takes.
-pub(super) fn face_groups(value: &toml::Value) -> Option<FaceGroups> {
-    let groups = value.as_table().filter(|groups| !groups.is_empty())?;
-    let group = |value: &toml::Value| {
-        let keys = value.as_table().filter(|keys| !keys.is_empty())?;
-        let mut group = FaceGroup::default();
-        for (name, value) in keys {
-            match name.as_str() {
-                "friction_coefficient" => {
-                    let friction = number(value).filter(|friction| (0.0..=1e6).contains(friction))?;
-                    group.friction = Some(FrictionCone::new(friction).ok()?);
-                }
-                "rest_slope_max_deg" if fits(value, Kind::AngleOrUnlimited) => {
-                    let angle = number(value).filter(|degrees| degrees.is_finite());
-                    group.rest =
-                        Some(angle.map_or(RestSlope::Unlimited, |degrees| RestSlope::AtMost(Angle::from_degrees(degrees))));
-                }
-                "keep_out" => group.keep_out = value.as_bool()?,
-                _ => return None,
-            }
-        }
-        Some(group)
-    };
-    groups.iter().map(|(name, value)| Some((name.clone(), group(value)?))).collect()
 }
 
 /// Whether a value is of a kind.

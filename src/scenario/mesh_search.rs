@@ -37,7 +37,8 @@ pub(super) fn mesh_search(entries: &mut Entries, terrain: Option<&TerrainSource>
         if terrain.is_some() && !entries.ask_for_free_mesh() {
             for name in ["contacts_max", "stand_off_m", "bounds_m", "seed", "time_max_s"] {
                 if entries.value("search", name).is_some() {
-                    let message = format!("search.{name} is for free routes over a mesh, and terrain is none or is sliced");
+                    let message =
+                        format!("search.{name} is for free routes over a mesh, and the terrain of this scenario is another one");
                     let help = "remove it, or give terrain.mesh = \"file.obj\" with route = \"free\"";
                     entries.problem(("search", name), ProblemKind::Misplaced, message, help);
                 }

@@ -7,6 +7,7 @@ mod contact;
 mod derating;
 mod document;
 mod entries;
+mod face_groups;
 mod file_kind;
 mod mesh_search;
 mod problem;

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use crate::{
     report::{
         CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshHopAnswer,
-        MeshPlanAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
+        MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
     },
     scenario::scenario_schema,
 };
@@ -54,6 +54,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Plan | DocumentKind::Run => derived::<PlanAnswer>(),
         DocumentKind::PlanMesh => derived::<MeshPlanAnswer>(),
         DocumentKind::Simulate => derived::<SimulateAnswer>(),
+        DocumentKind::SimulateMesh => derived::<MeshSimulateAnswer>(),
         DocumentKind::SimulateExperiment => derived::<ExperimentAnswer>(),
         DocumentKind::Require => derived::<RequireAnswer>(),
         DocumentKind::Trade => derived::<TradeAnswer>(),

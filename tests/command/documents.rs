@@ -6,7 +6,8 @@ use std::{collections::BTreeSet, path::Path, sync::OnceLock};
 
 use chta::report::{
     CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
-    MeshHopAnswer, MeshPlanAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
+    MeshHopAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer,
+    TradeAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
 use serde::{Serialize, de::DeserializeOwned};
@@ -129,6 +130,7 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::Plan | DocumentKind::Run => of::<PlanAnswer>(text),
         DocumentKind::PlanMesh => of::<MeshPlanAnswer>(text),
         DocumentKind::Simulate => of::<SimulateAnswer>(text),
+        DocumentKind::SimulateMesh => of::<MeshSimulateAnswer>(text),
         DocumentKind::SimulateExperiment => of::<ExperimentAnswer>(text),
         DocumentKind::Require => of::<RequireAnswer>(text),
         DocumentKind::Trade => of::<TradeAnswer>(text),

@@ -109,6 +109,39 @@ fn a_path_goes_through_the_window_and_every_hop_stands_alone() {
     assert_eq!(desk.read("path.csv").lines().count(), 1 + path.len());
 }
 
+/// Trials over the mesh: without errors all arrive; with errors the rate is that of the outcomes, a floor of success ends with status 1, and
+/// what is of profiles alone is refused.
+#[test]
+fn trials_fly_the_path_over_the_mesh() {
+    let desk = room(0.8, 1.2);
+    let errors = ["--set", "uncertainty.takeoff_speed_sigma_fraction=0.02", "--set", "uncertainty.goal_tolerance_m=0.5"];
+    let exact = ["simulate", "room.toml", "--trials", "200", "--set", "uncertainty.goal_tolerance_m=0.01"];
+    let number = |document: &Value, key: &str| document[key].as_f64().unwrap();
+    let document = desk.json(&exact);
+    assert_eq!((&document["schema"], &document["verdict"]), (&"chta/simulate-mesh/1".into(), &"traversable".into()));
+    assert_eq!(number(&document, "success_rate"), 1.0, "without errors");
+    let args = [&["simulate", "room.toml", "--trials", "400", "--seed", "5", "--compare"][..], &errors].concat();
+    let document = desk.json(&args);
+    let both = document["compare"].as_array().unwrap();
+    assert_eq!(both.len(), 2);
+    for of_policy in both {
+        let outcomes = of_policy["outcomes"].as_object().unwrap();
+        assert_eq!(outcomes.values().map(|count| count.as_u64().unwrap()).sum::<u64>(), 400, "{outcomes:?}");
+        let rate = number(of_policy, "success_rate");
+        assert!((rate - outcomes["reached"].as_f64().unwrap() / 400.0).abs() < 1e-12 && rate < 1.0, "{outcomes:?}");
+    }
+    assert_eq!(document["path"], desk.json(&[&["plan", "room.toml"][..], &errors].concat())["path"]);
+    let floor = desk.run(&[&args[..6], &errors, &["--success-min", "0.999"]].concat());
+    assert!(floor.status == 1 && floor.stdout.contains("is not shown"), "{floor:?}");
+    desk.refused(&["simulate", "room.toml", "--plot", "trials.svg"], &["--plot", "this terrain is a mesh", "leave the option out"]);
+    desk.refused(
+        &[&["simulate", "room.toml", "--set", "hopper.radius_m=0.01"][..], &errors].concat(),
+        &["hopper.radius_m", "set hopper.radius_m = 0"],
+    );
+    let point = [&["simulate", "room.toml", "--trials", "10", "--set", "hopper.radius_m=0"][..], &errors].concat();
+    assert!(desk.run(&point).status < 2, "the mending line");
+}
+
 #[test]
 fn without_a_window_the_answer_is_no_and_says_what_refuses() {
     let desk = room(1.0, 1.0);

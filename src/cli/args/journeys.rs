@@ -366,13 +366,19 @@ impl SimulateArgs {
         self.output.as_deref() == Some(Path::new("-"))
     }
 
-    /// Checks the options of trials.
-    pub(crate) fn check(&self, case: &Case) -> Result<(), Failure> {
+    /// Checks the width at which trials end.
+    pub(crate) fn check_half_width(&self) -> Result<(), Failure> {
         if let Some(half_width) = self.until_half_width.filter(|half_width| !(*half_width > 0.0 && *half_width < 0.5)) {
             return Err(Failure::message(format!(
                 "--until-half-width is {half_width}, expected a number above 0 and below 0.5: 0.01 stops at a rate known to one in a hundred"
             )));
         }
+        Ok(())
+    }
+
+    /// Checks the options of trials.
+    pub(crate) fn check(&self, case: &Case) -> Result<(), Failure> {
+        self.check_half_width()?;
         if self.plot_map.is_some() && !case.is_on_dem() {
             return Err(Failure::message("--plot-map: the landings lie on no DEM; give the scenario [terrain] dem, or use --plot"));
         }

@@ -25,7 +25,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
     let front = args.front()?;
     threads::start(args.answer.threads)?;
-    if let Some(input) = load_mesh_plan(&args.journey, &args.common, &args.search)? {
+    if let Some(input) = load_mesh_plan(&args.journey, &args.common, &args.search, Purpose::Plan, &[])? {
         return plan_over_mesh::run(args, &input);
     }
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Plan, &[])?;

@@ -1,7 +1,7 @@
 //! `chta plan` over a mesh.
 
 use chta::{
-    report::{MapKnowledge, mesh_plan_text, write_path_csv},
+    report::{DocumentKind, MapKnowledge, mesh_plan_text, write_path_csv},
     study::{MeshRouteQuestion, mesh_route},
 };
 
@@ -21,6 +21,8 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
         ("--plot-front", args.plot_front.is_some(), "draws a front over a DEM or a profile"),
         ("--prove", args.prove.prove, "bounds the hops along a profile"),
+        ("--dry-run", args.size.dry_run, "states the size of a search over a DEM"),
+        ("--memory-max-mib", args.size.memory_max_mib.is_some(), "limits the memory of a search over a DEM"),
     ];
     if let Some((option, _, what)) = refused.into_iter().find(|(_, given, _)| *given) {
         let message = format!("{option}: found this option, which {what}, and this terrain is a mesh: leave the option out");
@@ -33,7 +35,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
     output::warn_all(args.common.quiet, &routed.warnings);
     let views = Views {
         text: &|| mesh_plan_text(&routed.answer),
-        json: &|| input.document(&routed.warnings, &routed.answer),
+        json: &|| input.document(DocumentKind::PlanMesh, &routed.warnings, &routed.answer),
         csv: &|out| write_path_csv(&routed.answer.path, MapKnowledge::Metres, out),
     };
     let mut files = Files::default();

@@ -9,7 +9,7 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::{EndOptions, apply_options, lacking_on, look_at_keys, read_source, relative_name, validated};
+use super::{EndOptions, OwnKey, apply_options, lacking_on, look_at_keys, read_source, relative_name, validated};
 use crate::cli::{
     Failure,
     args::{CommonArgs, JourneyArgs, SearchArgs},
@@ -34,8 +34,8 @@ pub(crate) struct MeshPlanInput {
 
 impl MeshPlanInput {
     /// An answer as one document, with its warnings.
-    pub(crate) fn document<T: Serialize>(&self, warnings: &[String], answer: T) -> Result<String, Failure> {
-        Ok(self.record.document(DocumentKind::PlanMesh, warnings, answer).to_json()?)
+    pub(crate) fn document<T: Serialize>(&self, kind: DocumentKind, warnings: &[String], answer: T) -> Result<String, Failure> {
+        Ok(self.record.document(kind, warnings, answer).to_json()?)
     }
 }
 
@@ -44,6 +44,8 @@ pub(crate) fn load_mesh_plan(
     JourneyArgs { chain, start, goal }: &JourneyArgs,
     common: &CommonArgs,
     search: &SearchArgs,
+    purpose: Purpose,
+    own: &[OwnKey<'_>],
 ) -> Result<Option<MeshPlanInput>, Failure> {
     let input = inputs::open(chain, Role::Chain)?;
     if !input.is_scenario() || common.scenario.is_some() {
@@ -55,6 +57,9 @@ pub(crate) fn load_mesh_plan(
         return Ok(None);
     }
     look_at_keys(&mut source, true)?;
+    for (option, table, key, value) in own {
+        source.entries.set_by_option(option, table, key, value.clone());
+    }
     let given = source.entries.clone();
     let (base, name) = (source.base, source.name);
     let scenario = validated(source.entries, &name, &source.text)?;
@@ -65,7 +70,7 @@ pub(crate) fn load_mesh_plan(
     if !lacking.is_empty() {
         return Err(Failure::message(format!("{name}: {}", lacking_on(&lacking, "a mesh"))));
     }
-    let warnings: Vec<String> = Purpose::Plan.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
+    let warnings: Vec<String> = purpose.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
     output::warn_all(common.quiet, &warnings);
     let files = scenario_files(&scenario, &base);
     for file in &files {

@@ -42,7 +42,7 @@ pub enum RoadmapFileError {
     },
     /// A window that cannot be.
     #[error(
-        "window {number} is none: expected two different contacts of the file and lofts from 0 up, ascending among the windows of a hop, which \
+        "window {number} is not valid: expected two different contacts of the file and lofts from 0 up, ascending among the windows of a hop, which \
          stand together"
     )]
     Window {

@@ -1,6 +1,7 @@
 //! `chta simulate`: how reliably the planned path is flown.
 
 mod experiment;
+mod over_mesh;
 
 use chta::{
     report::{DocumentKind, simulate_text},
@@ -14,7 +15,7 @@ use crate::cli::{
     hints::further_means,
     inputs,
     landings::{Listener, RowFile},
-    load::{load_journey, plan_to_fly},
+    load::{load_journey, load_mesh_plan, plan_to_fly},
     output::{self, Pending},
     progress::Progress,
     threads,
@@ -27,6 +28,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
     // Set before the terrain is read, since reading starts the threads.
     threads::start(args.answer.threads)?;
+    if let Some(input) = load_mesh_plan(&args.journey, &args.common, &args.search, Purpose::Simulate, &args.own_keys())? {
+        return over_mesh::run(args, &input);
+    }
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Simulate, &args.own_keys())?;
     if let Some(name) = &args.experiment {
         return experiment::run(args, &loaded, name);

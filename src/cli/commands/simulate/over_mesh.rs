@@ -1,0 +1,40 @@
+//! `chta simulate` over a mesh.
+
+use chta::{
+    report::{DocumentKind, mesh_simulate_text},
+    study::{MeshRouteQuestion, mesh_route, simulate_over_mesh},
+};
+
+use crate::cli::{Answer, Failure, args::SimulateArgs, load::MeshPlanInput, output, progress::Progress, views::show};
+
+/// Simulates a free route over a mesh.
+pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
+    args.check_half_width()?;
+    let refused = [
+        ("--experiment", args.experiment.is_some(), "is flown along a profile"),
+        ("--output", args.output.is_some(), "writes landings along a profile"),
+        ("--plot", args.plot.is_some(), "draws trials along a profile (chta plan draws the path over a mesh)"),
+        ("--plot-map", args.plot_map.is_some(), "draws landings on a map"),
+        ("--tally", args.tally.is_some(), "writes a tally of trials along a profile"),
+        ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
+        ("--plan-anew", args.plan_anew, "plans the scenario of a result anew"),
+    ];
+    if let Some((option, _, what)) = refused.into_iter().find(|(_, given, _)| *given) {
+        let message = format!("{option}: found this option, which {what}, and this terrain is a mesh: leave the option out");
+        return Err(Failure::message(message));
+    }
+    let about = |error: &dyn std::error::Error| Failure::message(format!("{}: {error}", input.mesh.display()));
+    let progress = Progress::new(args.common.quiet);
+    let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: None };
+    let routed = mesh_route(&question, &progress).map_err(|error| Failure::about(&input.mesh, &error))?;
+    let simulated =
+        simulate_over_mesh(routed, &input.scenario, &args.options(), &mut (), &progress).map_err(|error| about(&error))?;
+    output::warn_all(args.common.quiet, &simulated.warnings);
+    let answer = &simulated.answer;
+    show(
+        args.answer.format,
+        || mesh_simulate_text(answer),
+        || input.document(DocumentKind::SimulateMesh, &simulated.warnings, answer),
+    )?;
+    Ok(Answer::of(answer.plan.is_traversable() && answer.shows_success()))
+}

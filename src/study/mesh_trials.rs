@@ -1,0 +1,99 @@
+//! How reliably a free route over a mesh is flown.
+
+use super::{MeshRouted, SimulateOptions, TrialGround};
+use crate::{
+    chain::ConstraintProblem,
+    progress::Progress,
+    quantity::format_number,
+    report::{MeshSimulateAnswer, SimulationRecord, SuccessRequirement},
+    scenario::Scenario,
+    uncertainty::{Observer, Policy, Simulation, SimulationError, Summary, TrialOptions},
+    world::FrictionCone,
+};
+
+/// Why there are no trials over a mesh.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshTrialsError {
+    /// A ball, whose first contact is not that of its centre.
+    #[error(
+        "found hopper.radius_m of {} m, expected a point for trials over a mesh, which follow its first contact: set hopper.radius_m = 0; the \
+         path of the ball is planned and flown again without errors", format_number(*.radius_m)
+    )]
+    Ball {
+        /// The radius, m.
+        radius_m: f64,
+    },
+    /// The surface states no grip, or the hopper no speeds.
+    #[error(transparent)]
+    Constraints(#[from] ConstraintProblem),
+    /// The trials.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+/// The trials of a plan over a mesh, with everything that their views need.
+#[derive(Clone, Debug)]
+pub struct MeshSimulated {
+    /// The plan.
+    pub routed: MeshRouted,
+    /// The results, policy by policy; empty without a path.
+    pub summaries: Vec<Summary>,
+    /// The answer as plain data.
+    pub answer: MeshSimulateAnswer,
+    /// The warnings about the plan and the trials.
+    pub warnings: Vec<String>,
+}
+
+/// Flies a plan over a mesh under the errors of its scenario, to the first contact of every flight with any facet. A hop that is planned anew
+/// leads to the contact of the roadmap with the fewest hops to the goal that one hop reaches. Without a path nothing is flown, and the
+/// answer says so.
+///
+/// # Errors
+/// [`MeshTrialsError`].
+pub fn simulate_over_mesh(
+    routed: MeshRouted,
+    scenario: &Scenario,
+    options: &SimulateOptions,
+    observer: &mut dyn Observer,
+    progress: &dyn Progress,
+) -> Result<MeshSimulated, MeshTrialsError> {
+    let radius_m = routed.ground.radius_m();
+    if radius_m > 0.0 {
+        return Err(MeshTrialsError::Ball { radius_m });
+    }
+    let keys = scenario.uncertainty.clone().unwrap_or_default();
+    let policies = if options.compare { Policy::ALL.to_vec() } else { vec![keys.policy] };
+    let mut warnings = routed.warnings.clone();
+    let mut summaries = Vec::new();
+    if let Some(mission) = routed.mission(scenario)? {
+        warnings.extend(scenario.trial_warnings(&policies, &trial_ground(&routed, scenario)));
+        let simulation = Simulation::new(&mission, keys.errors.clone())?;
+        for policy in policies {
+            let SimulateOptions { until_half_width, first_trial, .. } = *options;
+            let options = TrialOptions { policy, first_trial, until_half_width, ..keys.options() };
+            summaries.push(simulation.run(&options, observer, progress)?);
+        }
+    }
+    let hops = routed.path.as_ref().map_or(0, |path| path.hops.len());
+    let records: Vec<_> = summaries.iter().map(|summary| SimulationRecord::new(summary, hops)).collect();
+    let simulation = records.iter().find(|record| record.policy == keys.policy).cloned();
+    let compare = if records.len() > 1 { records } else { Vec::new() };
+    let requirement = options.success_min.map(|success_min| SuccessRequirement::of(success_min, simulation.as_ref()));
+    let answer = MeshSimulateAnswer { plan: routed.answer.clone(), simulation, compare, requirement };
+    Ok(MeshSimulated { routed, summaries, answer, warnings })
+}
+
+/// What the warnings about trials need to know of the mesh.
+fn trial_ground(routed: &MeshRouted, scenario: &Scenario) -> TrialGround {
+    let bounds = routed.ground.tree().mesh().bounds();
+    let ends = [routed.grown.ends.0, routed.grown.ends.1].map(|node| routed.grown.roadmap.contact(node).point_m());
+    // Groups of faces may have their own friction, where the scenario has none.
+    let friction = scenario.surface.constant_friction().map(FrictionCone::coefficient);
+    TrialGround {
+        friction_max: friction,
+        extent_m: (bounds.map.max - bounds.map.min).norm(),
+        journey_m: Some((ends[1] - ends[0]).norm()),
+        hops: routed.path.as_ref().map_or(0, |path| path.hops.len()),
+    }
+}
