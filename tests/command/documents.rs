@@ -93,6 +93,8 @@ pub(crate) fn documents() -> &'static [(String, String)] {
         );
         std::fs::write(file("space.toml"), space).unwrap();
         commands.push(format!("plan {} --front hops,arc-length", file("space.toml")));
+        let errors = "--set uncertainty.takeoff_speed_sigma_fraction=0.02 --set uncertainty.goal_tolerance_m=1 --trials 20 --compare";
+        commands.push(format!("simulate {} {errors} --success-min 0.5", file("space.toml")));
         let pole = root.join("../shared/dem/lola_dem_north.tif");
         if pole.is_file() {
             let by_hops = "--scenario data/scenarios/lunar_rille.toml --accept-map-scale --set hopper.takeoff_speed_max_m_s=100 \

@@ -186,9 +186,9 @@ fn what_has_no_meaning_on_a_mesh_is_refused_by_name() {
         let ran = desk.run(&[&["plan", "room.toml"][..], options].concat());
         assert!(ran.status == 2 && ran.stderr.contains(part) && ran.stdout.is_empty(), "{options:?}: {ran:?}");
     }
-    for command in ["check", "simulate"] {
-        let ran = desk.run(&[command, "room.toml"]);
-        assert!(ran.status == 2 && ran.stderr.contains("which a plan alone answers"), "{command}: {ran:?}");
+    for words in [&["check", "room.toml"][..], &["require", "room.toml", "--vary", "hopper.takeoff_speed_max_m_s"]] {
+        let ran = desk.run(words);
+        assert!(ran.status == 2 && ran.stderr.contains("which plans and their trials alone answer"), "{words:?}: {ran:?}");
     }
     let ran = desk.run(&["plan", "chain.csv", "--set", "search.contacts_max=9", "--body", "moon"]);
     assert!(ran.status == 2 && ran.stderr.contains("search.contacts_max is for free routes over a mesh"), "{ran:?}");

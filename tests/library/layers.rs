@@ -204,7 +204,7 @@ const LONGER_COMMANDS: [(&str, usize, &str); 3] = [
     ("fan.rs", 66, "two answers: the size before the computation, and the rays"),
     ("plan.rs", 64, "two answers: the size before the search, and the path; a mesh goes on to a file of its own"),
     ("simulate/mod.rs", 64, "experiments and meshes go on to files of their own"),
-]
+];
 
 /// A file of a command that has more lines than it may, or fewer than its exception grants by far.
 fn misfit(name: &str, lines: usize) -> Option<String> {

@@ -23,7 +23,7 @@ pub(crate) struct SynthArgs {
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     pub(crate) seed: u64,
-    /// A mesh in place of an elevation raster: a tunnel, a roof over the ground, or boulders
+    /// A mesh in place of an elevation raster: a tunnel, a roof over the ground, or boulders [default: none]
     #[arg(
         long,
         value_enum,
