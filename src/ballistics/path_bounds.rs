@@ -77,7 +77,8 @@ impl PathBounds {
     /// # Examples
     /// ```
     /// use chta::ballistics::PathBounds;
-    /// let bounds = PathBounds::new(5.0, 9.0, 1.62);
+    /// // g (C + Z) <= 25 at the take-off, g (C - Z) <= 169 at the landing.
+    /// let bounds = PathBounds::new(5.0, 13.0, 1.62);
     /// assert!(bounds.span(15.0, 0.0) && !bounds.span(16.0, 0.0) && bounds.span(50.0, -40.0) && !bounds.span(50.0, -30.0));
     /// ```
     #[inline]

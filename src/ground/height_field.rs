@@ -68,23 +68,23 @@ impl HeightField {
 /// The cosine of an angle in turns, to some 1e-15.
 ///
 /// A trial asks for the heights of all posts under its flights: a branch for the quadrant, as a library has it, would keep waves from being
-/// evaluated side by side, and takes seven times as long.
+/// evaluated side by side, and takes several times as long.
 #[inline]
 fn cos_of_turns(turns: f64) -> f64 {
     // The sum has no digits behind the point left: it rounds to the nearest whole number.
     const ROUNDS: f64 = 1.5 / f64::EPSILON;
     // cos(2 pi t) = sin(2 pi y) with y = 1/4 - |t|, by its Taylor series: the first term left out is below 3e-16.
     const TERMS: [f64; 10] = [
-        6.283185307179586,
-        -41.34170224039976,
-        81.60524927607506,
-        -76.70585975306139,
-        42.058693944897655,
-        -15.09464257682299,
-        3.819952584848282,
-        -0.7181223017785006,
-        0.10422916220813984,
-        -0.012031585942120627,
+        TAU,
+        -41.341_702_240_399_76,
+        81.605_249_276_075_06,
+        -76.705_859_753_061_39,
+        42.058_693_944_897_655,
+        -15.094_642_576_822_99,
+        3.819_952_584_848_282,
+        -0.718_122_301_778_500_6,
+        0.104_229_162_208_139_84,
+        -0.012_031_585_942_120_627,
     ];
     let part = turns - ((turns + ROUNDS) - ROUNDS);
     let y = 0.25 - part.abs();

@@ -7,7 +7,7 @@ use crate::{
     quantity::format_number,
     report::{MeshSimulateAnswer, SimulationRecord, SuccessRequirement},
     scenario::Scenario,
-    uncertainty::{Observer, Policy, Simulation, SimulationError, Summary, TrialOptions},
+    uncertainty::{Observer, Policy, Simulation, SimulationError, Summary, Tally, TrialOptions},
     world::FrictionCone,
 };
 
@@ -39,6 +39,8 @@ pub struct MeshSimulated {
     pub routed: MeshRouted,
     /// The results, policy by policy; empty without a path.
     pub summaries: Vec<Summary>,
+    /// The tallies, policy by policy; empty unless they were wanted.
+    pub tallies: Vec<Tally>,
     /// The answer as plain data.
     pub answer: MeshSimulateAnswer,
     /// The warnings about the plan and the trials.
@@ -65,14 +67,20 @@ pub fn simulate_over_mesh(
     let keys = scenario.uncertainty.clone().unwrap_or_default();
     let policies = if options.compare { Policy::ALL.to_vec() } else { vec![keys.policy] };
     let mut warnings = routed.warnings.clone();
-    let mut summaries = Vec::new();
+    let (mut summaries, mut tallies) = (Vec::new(), Vec::new());
     if let Some(mission) = routed.mission(scenario)? {
         warnings.extend(scenario.trial_warnings(&policies, &trial_ground(&routed, scenario)));
         let simulation = Simulation::new(&mission, keys.errors.clone())?;
         for policy in policies {
-            let SimulateOptions { until_half_width, first_trial, .. } = *options;
-            let options = TrialOptions { policy, first_trial, until_half_width, ..keys.options() };
-            summaries.push(simulation.run(&options, observer, progress)?);
+            let SimulateOptions { until_half_width, first_trial, tally, .. } = *options;
+            let options = TrialOptions { first_trial, policy, until_half_width, ..keys.options() };
+            if tally {
+                let (summary, tally) = simulation.run_and_tally(&options, observer, progress)?;
+                summaries.push(summary);
+                tallies.push(tally);
+            } else {
+                summaries.push(simulation.run(&options, observer, progress)?);
+            }
         }
     }
     let hops = routed.path.as_ref().map_or(0, |path| path.hops.len());
@@ -81,7 +89,7 @@ pub fn simulate_over_mesh(
     let compare = if records.len() > 1 { records } else { Vec::new() };
     let requirement = options.success_min.map(|success_min| SuccessRequirement::of(success_min, simulation.as_ref()));
     let answer = MeshSimulateAnswer { plan: routed.answer.clone(), simulation, compare, requirement };
-    Ok(MeshSimulated { routed, summaries, answer, warnings })
+    Ok(MeshSimulated { routed, summaries, tallies, answer, warnings })
 }
 
 /// What the warnings about trials need to know of the mesh.

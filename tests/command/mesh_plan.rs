@@ -130,6 +130,10 @@ fn trials_fly_the_path_over_the_mesh() {
         let rate = number(of_policy, "success_rate");
         assert!((rate - outcomes["reached"].as_f64().unwrap() / 400.0).abs() < 1e-12 && rate < 1.0, "{outcomes:?}");
     }
+    // Ranges of trials are tallied as over other ground.
+    let ranged =
+        [&["simulate", "room.toml", "--trials", "100", "--first-trial", "100", "--tally", "tally.json"][..], &errors].concat();
+    assert_eq!((desk.json(&ranged)["first_trial"].as_u64(), desk.read("tally.json").is_empty()), (Some(100), false));
     assert_eq!(document["path"], desk.json(&[&["plan", "room.toml"][..], &errors].concat())["path"]);
     let floor = desk.run(&[&args[..6], &errors, &["--success-min", "0.999"]].concat());
     assert!(floor.status == 1 && floor.stdout.contains("is not shown"), "{floor:?}");

@@ -15,7 +15,6 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
         ("--output", args.output.is_some(), "writes landings along a profile"),
         ("--plot", args.plot.is_some(), "draws trials along a profile (chta plan draws the path over a mesh)"),
         ("--plot-map", args.plot_map.is_some(), "draws landings on a map"),
-        ("--tally", args.tally.is_some(), "writes a tally of trials along a profile"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
         ("--plan-anew", args.plan_anew, "plans the scenario of a result anew"),
     ];
@@ -23,6 +22,7 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
         let message = format!("{option}: found this option, which {what}, and this terrain is a mesh: leave the option out");
         return Err(Failure::message(message));
     }
+    let tally = args.tally.as_deref().map(Pending::begin).transpose()?;
     let about = |error: &dyn std::error::Error| Failure::message(format!("{}: {error}", input.mesh.display()));
     let progress = Progress::new(args.common.quiet);
     let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: None };
@@ -30,6 +30,9 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
     let simulated =
         simulate_over_mesh(routed, &input.scenario, &args.options(), &mut (), &progress).map_err(|error| about(&error))?;
     output::warn_all(args.common.quiet, &simulated.warnings);
+    let mut files = Files::default();
+    files.json(tally, simulated.tallies.first())?;
+    files.finish()?;
     let answer = &simulated.answer;
     show(
         args.answer.format,
