@@ -175,7 +175,7 @@ fn the_memory_of_a_free_plan_is_stated_and_limited() {
     assert_eq!(desk.run(&[&fine[..], &["--memory-max-mib", enough, "--dry-run"]].concat()).status, 0, "{refused}");
     for option in [&["--dry-run"][..], &["--memory-max-mib", "1"]] {
         desk.refused(
-            &[&["plan", "free.toml", "--set", "terrain.route=transect"][..], option].concat(),
+            &[&["plan", "free.toml", "--quiet", "--set", "terrain.route=transect"][..], option].concat(),
             &["only for a free route", "terrain.route = \"free\""],
         );
     }
