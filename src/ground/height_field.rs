@@ -56,9 +56,9 @@ impl HeightField {
     pub fn at(&self, east_m: f64, north_m: f64) -> f64 {
         let mut sums_m = [0.0; LANES];
         for waves in &self.waves {
-            for lane in 0..LANES {
+            for (lane, sum_m) in sums_m.iter_mut().enumerate() {
                 let turns = waves.east[lane] * east_m + waves.north[lane] * north_m + waves.phase[lane];
-                sums_m[lane] += waves.amplitude_m[lane] * cos_of_turns(turns);
+                *sum_m += waves.amplitude_m[lane] * cos_of_turns(turns);
             }
         }
         (sums_m[0] + sums_m[1]) + (sums_m[2] + sums_m[3])

@@ -5,7 +5,14 @@ use chta::{
     study::{MeshRouteQuestion, mesh_route, simulate_over_mesh},
 };
 
-use crate::cli::{Answer, Failure, args::SimulateArgs, load::MeshPlanInput, output, progress::Progress, views::show};
+use crate::cli::{
+    Answer, Failure,
+    args::SimulateArgs,
+    load::MeshPlanInput,
+    output::{self, Pending},
+    progress::Progress,
+    views::{Files, show},
+};
 
 /// Simulates a free route over a mesh.
 pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
