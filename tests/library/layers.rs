@@ -235,8 +235,8 @@ fn commands_parse_ask_a_study_and_write() {
 
 #[test]
 fn a_command_that_is_too_long_is_found() {
-    assert_eq!(misfit("plan.rs", COMMAND_LINES), None);
-    assert!(misfit("plan.rs", COMMAND_LINES + 1).is_some());
+    assert_eq!(misfit("check.rs", COMMAND_LINES), None);
+    assert!(misfit("check.rs", COMMAND_LINES + 1).is_some());
     let (file, most, _) = LONGER_COMMANDS[0];
     assert_eq!(misfit(file, most), None);
     assert!(misfit(file, most + 1).is_some() && misfit(file, COMMAND_LINES).is_some());
