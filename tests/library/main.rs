@@ -46,6 +46,7 @@ mod margins;
 mod mended;
 mod mesh_ball;
 mod mesh_degenerate;
+#[cfg(feature = "plot")]
 mod mesh_figure;
 mod mesh_flight;
 mod mesh_routes;
