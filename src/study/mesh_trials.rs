@@ -1,6 +1,6 @@
 //! How reliably a free route over a mesh is flown.
 
-use super::{MeshRouted, SimulateOptions, TrialGround};
+use super::{MeshRouted, SimulateOptions, TrialGround, simulate::by_policy};
 use crate::{
     chain::ConstraintProblem,
     progress::Progress,
@@ -71,17 +71,9 @@ pub fn simulate_over_mesh(
     if let Some(mission) = routed.mission(scenario)? {
         warnings.extend(scenario.trial_warnings(&policies, &trial_ground(&routed, scenario)));
         let simulation = Simulation::new(&mission, keys.errors.clone())?;
-        for policy in policies {
-            let SimulateOptions { until_half_width, first_trial, tally, .. } = *options;
-            let options = TrialOptions { first_trial, policy, until_half_width, ..keys.options() };
-            if tally {
-                let (summary, tally) = simulation.run_and_tally(&options, observer, progress)?;
-                summaries.push(summary);
-                tallies.push(tally);
-            } else {
-                summaries.push(simulation.run(&options, observer, progress)?);
-            }
-        }
+        let SimulateOptions { until_half_width, first_trial, tally, .. } = *options;
+        let trials = TrialOptions { first_trial, until_half_width, ..keys.options() };
+        (summaries, tallies) = by_policy(&simulation, &policies, (trials, tally), observer, progress)?;
     }
     let hops = routed.path.as_ref().map_or(0, |path| path.hops.len());
     let records: Vec<_> = summaries.iter().map(|summary| SimulationRecord::new(summary, hops)).collect();
@@ -94,10 +86,12 @@ pub fn simulate_over_mesh(
 
 /// What the warnings about trials need to know of the mesh.
 fn trial_ground(routed: &MeshRouted, scenario: &Scenario) -> TrialGround {
-    let bounds = routed.ground.tree().mesh().bounds();
+    let mesh = routed.ground.tree().mesh();
+    let bounds = mesh.bounds();
     let ends = [routed.grown.ends.0, routed.grown.ends.1].map(|node| routed.grown.roadmap.contact(node).point_m());
-    // Groups of faces may have their own friction, where the scenario has none.
-    let friction = scenario.surface.constant_friction().map(FrictionCone::coefficient);
+    let is_one = scenario.groups.is_empty() && mesh.faces().are_bare();
+    // The frictions of groups of faces are not looked through.
+    let friction = if is_one { scenario.surface.constant_friction().map(FrictionCone::coefficient) } else { Some(f64::INFINITY) };
     TrialGround {
         friction_max: friction,
         extent_m: (bounds.map.max - bounds.map.min).norm(),

@@ -17,7 +17,7 @@ use crate::{
     progress::{Cancelled, Progress},
     report::{HopRecord, SimulateAnswer, SimulationRecord},
     terrain::{Dem, TerrainError},
-    uncertainty::{Observer, Policy, SimulationError, Summary, Tally, TrialOptions},
+    uncertainty::{Observer, Policy, Simulation, SimulationError, Summary, Tally, TrialOptions},
 };
 
 /// How many trials are kept with all their hops, for the pictures.
@@ -101,6 +101,28 @@ pub struct Simulated {
 /// The planned hops as the answer lists them: the same, whether or not the plan was estimated.
 fn planned_rows(planned: &Planned) -> Vec<HopRecord> {
     planned.answer.path.iter().map(|hop| HopRecord { margins_sigma: None, success_estimated: None, ..hop.clone() }).collect()
+}
+
+/// Trials policy by policy on the same draws; with their tallies, if they are wanted.
+pub(super) fn by_policy(
+    simulation: &Simulation,
+    policies: &[Policy],
+    (options, tally): (TrialOptions, bool),
+    observer: &mut dyn Observer,
+    progress: &dyn Progress,
+) -> Result<(Vec<Summary>, Vec<Tally>), SimulationError> {
+    let (mut summaries, mut tallies) = (Vec::new(), Vec::new());
+    for policy in policies {
+        let options = TrialOptions { policy: *policy, ..options };
+        if tally {
+            let (summary, tally) = simulation.run_and_tally(&options, observer, progress)?;
+            summaries.push(summary);
+            tallies.push(tally);
+        } else {
+            summaries.push(simulation.run(&options, observer, progress)?);
+        }
+    }
+    Ok((summaries, tallies))
 }
 
 /// Flies the trials of a plan under the errors of its scenario. Without a path nothing is flown, and the answer says so.
@@ -190,17 +212,7 @@ impl Trials {
         };
         let flyer = Flyer::new(&planned, &policies, progress)?;
         let simulation = flyer.simulation(path)?;
-        let (mut summaries, mut tallies) = (Vec::new(), Vec::new());
-        for policy in policies {
-            let options = TrialOptions { policy, ..options };
-            if tally {
-                let (summary, tally) = simulation.run_and_tally(&options, observer, progress)?;
-                summaries.push(summary);
-                tallies.push(tally);
-            } else {
-                summaries.push(simulation.run(&options, observer, progress)?);
-            }
-        }
+        let (summaries, tallies) = by_policy(&simulation, &policies, (options, tally), observer, progress)?;
         let hops = path.hops.len();
         let records: Vec<_> = summaries.iter().map(|summary| SimulationRecord::new(summary, hops)).collect();
         let own = planned.case.scenario.uncertainty.clone().unwrap_or_default().policy;
