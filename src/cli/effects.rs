@@ -160,7 +160,9 @@ impl Purpose {
             ("search", "points_per_segment") => !matches!(self, Self::Hop | Self::Map { .. }),
             ("search", "node_spacing_max_m") => self != Self::Hop,
             // Of free routes over meshes.
-            ("search", "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => self == Self::Plan,
+            ("search", "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => {
+                matches!(self, Self::Plan | Self::Simulate)
+            }
             ("search", "effort" | "takeoff_angle" | "split") if by_objective => true,
             ("search", "effort") => !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { effort: false, .. }),
             ("search", "takeoff_angle" | "split" | "risk" | "risk_extra_hops_max") if by_success => true,

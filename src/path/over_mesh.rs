@@ -3,7 +3,7 @@
 use super::{Hop, HopPath, heading_deg};
 use crate::{
     ballistics::{Arc, delta_v_m_s},
-    ground::{ContactPoint, MeshContact, MeshGround},
+    ground::{MeshContact, MeshGround},
     hop::{Flown, HopMargins},
     quantity::{Angle, AngleInterval},
     world::{Contact, Direction},
@@ -37,7 +37,6 @@ fn hop(ground: &MeshGround, [takeoff, landing]: [&MeshContact; 2], arc: &Arc, al
     let lofts = window.lofts;
     let angle = |loft: f64| Angle::from_slope(course.sight.slope() + loft);
     let (takeoff_speed_m_s, landing_speed_m_s) = (arc.takeoff_speed_m_s(), arc.landing_speed_m_s());
-    let point = |contact: &MeshContact, along_m| ContactPoint::on_map(along_m, contact.point_m().xy(), contact.point_m().z);
     let flown = Flown {
         arc,
         takeoff: from,
@@ -50,8 +49,8 @@ fn hop(ground: &MeshGround, [takeoff, landing]: [&MeshContact; 2], arc: &Arc, al
     };
     Some(Hop {
         direction: Direction::Forward,
-        takeoff: point(takeoff, along_m),
-        landing: point(landing, along_m + course.sight.run_m()),
+        takeoff: takeoff.at_m(along_m),
+        landing: landing.at_m(along_m + course.sight.run_m()),
         heading_deg: heading_deg(takeoff.point_m().xy(), landing.point_m().xy()),
         takeoff_angle: arc.takeoff_angle(),
         takeoff_speed_m_s,

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use super::{
     Amount, Amounts, Budgets, FoundPath, LabelCap, LeastAmounts, LegGraph, LegVisitor, Objective, Successor, UnmetBudget, front,
-    search::{search, without_budgets},
+    search::{WithoutBudgets, search, without_budgets},
 };
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
@@ -292,10 +292,10 @@ pub fn search_on_chain(
         }
         // No path keeps the budgets: what the best one takes, and the least of what it takes too much of.
         let without = without_budgets(&legs, legs.ends(), question.objective, question.budgets, question.cap)?;
-        let Some((best, unmet)) = without else { break };
-        let path = legs.on_chain(&best);
+        let Some(WithoutBudgets { path, within, unmet, capped: left_out }) = without else { break };
+        let path = legs.on_chain(&path);
         answer.outcome = Outcome::Path { legs: path.legs, cost: path.cost };
-        return Ok(ChainSearched { answer, totals: Some(path.totals), within: false, unmet, capped });
+        return Ok(ChainSearched { answer, totals: Some(path.totals), within, unmet, capped: capped || left_out });
     }
     // A path that the first search found is one over these nodes too.
     Ok(ChainSearched { answer, totals: None, within: false, unmet: Vec::new(), capped })

@@ -315,16 +315,11 @@ impl<'a> Asked<'a> {
             let legs = self.legs((levels, Counted::All), question);
             let found = without_budgets(&legs, legs.ends(), objective, budgets, cap)?;
             work.pairs_tested += legs.pairs();
-            best = found.map(|(path, unmet)| (self.path(&legs, &path), path, unmet));
-        }
-        if best.is_none() {
-            // Labels of every path were left out: that of the fewest hops is a path all the same.
-            let legs = self.legs((levels, Counted::OfFewest), question);
-            let found = search(&legs, legs.ends(), &Objective::of(Amount::Hops), &Budgets::NONE, LabelCap::NONE)?.path;
-            work.pairs_tested += legs.pairs();
-            best = found.map(|path| (self.path(&legs, &path), path, Vec::new()));
-            within = best.as_ref().is_some_and(|(_, path, _)| budgets.exceeded_by(&path.totals).next().is_none());
-            capped = true;
+            if let Some(found) = found {
+                within = found.within;
+                capped |= found.capped;
+                best = Some((self.path(&legs, &found.path), found.path, found.unmet));
+            }
         }
         let (path, hops, unmet) = match best {
             Some((path, found, unmet)) => (Some(path), SurfaceLegs::hops_of(&found).collect(), unmet),

@@ -334,20 +334,35 @@ pub struct UnmetBudget {
     pub least: f64,
 }
 
-/// Where no path keeps the budgets: the best without them, and for each budget that it exceeds the least of any path. `None` if there is no
-/// path.
+/// The path that stands where a search within budgets found none.
+pub(super) struct WithoutBudgets {
+    pub(super) path: FoundPath,
+    /// Whether it keeps the budgets after all: labels of such paths were left out.
+    pub(super) within: bool,
+    /// The budgets that it exceeds, each with the least of any path.
+    pub(super) unmet: Vec<UnmetBudget>,
+    /// Whether labels were left out: it may then not be the best.
+    pub(super) capped: bool,
+}
+
+/// Where no path keeps the budgets: the best without them, and for each budget that it exceeds the least of any path. Where labels of every
+/// path were left out, that of the fewest hops is a path all the same. `None` if there is no path.
 pub(super) fn without_budgets(
     graph: &impl LegGraph,
     ends: (usize, usize),
     objective: &Objective,
     budgets: &Budgets,
     cap: LabelCap,
-) -> Result<Option<(FoundPath, Vec<UnmetBudget>)>, Cancelled> {
-    let Some(best) = search(graph, ends, objective, &Budgets::NONE, cap)?.path else { return Ok(None) };
+) -> Result<Option<WithoutBudgets>, Cancelled> {
+    let SearchResult { mut path, capped, .. } = search(graph, ends, objective, &Budgets::NONE, cap)?;
+    if path.is_none() && capped {
+        path = search(graph, ends, &Objective::of(Amount::Hops), &Budgets::NONE, LabelCap::NONE)?.path;
+    }
+    let Some(path) = path else { return Ok(None) };
     let mut unmet = Vec::new();
-    for over in budgets.exceeded_by(&best.totals) {
+    for over in budgets.exceeded_by(&path.totals) {
         let least = least_total(graph, ends, over.amount, cap)?.unwrap_or(over.total);
         unmet.push(UnmetBudget { over, least });
     }
-    Ok(Some((best, unmet)))
+    Ok(Some(WithoutBudgets { path, within: unmet.is_empty(), unmet, capped }))
 }

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::*;
+use super::{search::without_budgets, *};
 use crate::{draw::Draw, progress::Cancelled};
 
 const NODES: usize = 6;
@@ -252,6 +252,15 @@ fn a_cap_on_labels_is_reported_wherever_it_changes_an_answer() {
                 (exact, short) => exact.is_some() != short.is_some(),
             };
             assert!(!differs || short.capped, "case {case}: another answer, without a word");
+            // Without budgets a path that exists is never denied, whatever labels were left out.
+            let whole = search(&graph, ends, &objective, &Budgets::NONE, LabelCap::NONE).unwrap().path;
+            let stands = without_budgets(&graph, ends, &objective, &budgets, cap).unwrap();
+            assert_eq!(stands.is_some(), whole.is_some(), "case {case}");
+            if let (Some(stands), Some(whole)) = (&stands, &whole) {
+                let exceeded = budgets.exceeded_by(&stands.path.totals).count();
+                assert_eq!((stands.within, stands.unmet.len()), (exceeded == 0, exceeded), "case {case}");
+                assert!(stands.capped || by(&objective, &stands.path.totals, &whole.totals).is_eq(), "case {case}");
+            }
             changed += usize::from(differs);
             capped += usize::from(short.capped);
         }

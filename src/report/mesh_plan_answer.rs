@@ -100,9 +100,9 @@ pub struct RoadmapRoundRecord {
     pub contacts: usize,
     /// Windows so far.
     pub windows: usize,
-    /// Hops of the best path so far; null while there is none.
+    /// Hops of the best path so far; null before a path is found.
     pub hops: Option<u64>,
-    /// Its totals in all amounts of the objective; empty while there is no path.
+    /// Its totals in all amounts of the objective; empty before a path is found.
     pub totals: Vec<AmountRecord>,
 }
 

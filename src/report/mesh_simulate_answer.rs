@@ -3,7 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{MeshPlanAnswer, SimulationRecord, SuccessRequirement, mesh_plan_text};
+use super::{
+    MeshPlanAnswer, SimulationRecord, SuccessRequirement, mesh_plan_text,
+    simulate_answer::{records_text, requirement_text},
+};
 
 /// The answer of a simulation over a mesh: the plan and, with a path, the results of its trials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -31,18 +34,6 @@ impl MeshSimulateAnswer {
 
 /// The text of `chta simulate` over a mesh.
 pub fn mesh_simulate_text(answer: &MeshSimulateAnswer) -> String {
-    let mut text = mesh_plan_text(&answer.plan);
-    if answer.simulation.is_none() && answer.compare.is_empty() {
-        text.push_str("nothing to simulate: there is no nominal path\n");
-    }
-    let own = answer.simulation.iter().filter(|_| answer.compare.is_empty());
-    for record in own.chain(&answer.compare) {
-        text.push('\n');
-        text.push_str(&record.text());
-    }
-    if let (Some(requirement), Some(simulation)) = (&answer.requirement, &answer.simulation) {
-        text.push('\n');
-        text.push_str(&requirement.sentence(simulation));
-    }
-    text
+    let (own, compared) = (answer.simulation.as_ref(), answer.compare.as_slice());
+    [mesh_plan_text(&answer.plan), records_text(own, compared), requirement_text(answer.requirement, own)].concat()
 }

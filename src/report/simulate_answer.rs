@@ -48,7 +48,7 @@ impl SuccessRequirement {
     }
 
     /// The same as a sentence.
-    pub(super) fn sentence(&self, trials: &SimulationRecord) -> String {
+    fn sentence(&self, trials: &SimulationRecord) -> String {
         let Self { success_min, success_min_shown } = self;
         let SimulationRecord { success_rate, success_rate_ci95: [low, _], .. } = trials;
         if *success_min_shown {
@@ -96,20 +96,24 @@ impl SimulateAnswer {
 /// The text of `chta simulate`.
 pub fn simulate_text(answer: &SimulateAnswer, means: FurtherMeans<'_>) -> String {
     let mut text = check_text(&answer.check, means);
-    if answer.simulation.is_none() && answer.compare.is_empty() {
-        text.push_str("nothing to simulate: there is no nominal path\n");
-    }
-    let own = answer.simulation.iter().filter(|_| answer.compare.is_empty());
-    for record in own.chain(&answer.compare) {
-        text.push('\n');
-        text.push_str(&record.text());
-    }
+    text.push_str(&records_text(answer.simulation.as_ref(), &answer.compare));
     text.push_str(&answer.advice_text());
-    if let (Some(requirement), Some(simulation)) = (&answer.requirement, &answer.simulation) {
-        text.push('\n');
-        text.push_str(&requirement.sentence(simulation));
-    }
+    text.push_str(&requirement_text(answer.requirement, answer.simulation.as_ref()));
     text
+}
+
+/// The trials of the scenario's policy, or those of several that are compared.
+pub(super) fn records_text(own: Option<&SimulationRecord>, compared: &[SimulationRecord]) -> String {
+    if own.is_none() && compared.is_empty() {
+        return "nothing to simulate: there is no nominal path\n".to_owned();
+    }
+    let own = own.filter(|_| compared.is_empty());
+    own.into_iter().chain(compared).flat_map(|record| ["\n".to_owned(), record.text()]).collect()
+}
+
+/// Whether trials show the success that is required of them, if some is.
+pub(super) fn requirement_text(requirement: Option<SuccessRequirement>, trials: Option<&SimulationRecord>) -> String {
+    requirement.zip(trials).map(|(requirement, trials)| format!("\n{}", requirement.sentence(trials))).unwrap_or_default()
 }
 
 /// The results of the trials of one policy.

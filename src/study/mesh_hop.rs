@@ -109,8 +109,8 @@ pub fn mesh_hop(question: &MeshHopQuestion<'_>) -> Result<MeshHopped, MeshHopErr
     let MeshHopQuestion { scenario, mesh, scale, ends_m } = question;
     check_keys(scenario)?;
     let (ground, mut warnings) = mesh_ground(scenario, mesh, *scale)?;
-    let contact = |at, end| ground.contact(at).map_err(|problem| MeshHopError::NoContact { end, problem });
-    let contacts = [contact(ends_m[0], "take-off")?, contact(ends_m[1], "landing")?];
+    let contacts =
+        [on_mesh(&ground, ends_m[0], "take-off", &mut warnings)?, on_mesh(&ground, ends_m[1], "landing", &mut warnings)?];
     let [takeoff, landing] = &contacts;
     let at = takeoff.point_m();
     let same = MeshHopError::SamePlace { x_m: at.x, y_m: at.y };
@@ -126,6 +126,29 @@ pub fn mesh_hop(question: &MeshHopQuestion<'_>) -> Result<MeshHopped, MeshHopErr
     warnings.extend(DeratingRecord::of(&scenario.derating).map(|derating| derating.sentence()));
     Ok(MeshHopped { ground, contacts, set, answer, warnings })
 }
+
+/// The contact nearest to a given point; a point far from the mesh is warned of.
+pub(super) fn on_mesh(
+    ground: &MeshGround,
+    at: Point3<f64>,
+    end: &'static str,
+    warnings: &mut Vec<String>,
+) -> Result<MeshContact, MeshHopError> {
+    let contact = ground.contact(at).map_err(|problem| MeshHopError::NoContact { end, problem })?;
+    let size_m = ground.tree().mesh().bounds().size_m();
+    if contact.moved_m() > FAR * size_m {
+        warnings.push(format!(
+            "the {end} was moved {} m to the surface of a mesh that measures {} m: the answer is for the place on the mesh; check the point, its \
+             unit and terrain.mesh_scale",
+            format_number(contact.moved_m()),
+            format_number(size_m)
+        ));
+    }
+    Ok(contact)
+}
+
+/// A point farther from the surface than this share of the size of the mesh was hardly meant to be moved there.
+const FAR: f64 = 0.5;
 
 #[cfg(feature = "plot")]
 impl MeshHopped {

@@ -9,7 +9,7 @@ use super::{
     free_front::are_the_same,
     front::{amount_row, front_commands, front_hops_max},
     mesh_flown::flown_again,
-    mesh_hop::{check_keys, mesh_ground},
+    mesh_hop::{check_keys, mesh_ground, on_mesh},
 };
 use crate::{
     ballistics::PathBounds,
@@ -135,7 +135,12 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
     let (ground, mut warnings) = mesh_ground(scenario, &question.base.join(file), *scale)?;
     let search = &scenario.mesh_search;
     let given_m = [*start_m, *goal_m];
-    let surface = [on_surface(&ground, search.bounds, "start", *start_m)?, on_surface(&ground, search.bounds, "goal", *goal_m)?];
+    let surface = [(*start_m, "start"), (*goal_m, "goal")].map(|(at, end)| {
+        let contact = on_mesh(&ground, at, end, &mut warnings)?;
+        within(search.bounds, end, contact)
+    });
+    let [start, goal] = surface;
+    let surface = [start?, goal?];
     let stand_off_m = search.stand_off_m.unwrap_or(0.0);
     let stood = |contact: &MeshContact, end| {
         let point_m = contact.point_m();
@@ -168,14 +173,8 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
     Ok(MeshRouted { ground, grown, path, answer, warnings })
 }
 
-/// The contact nearest to an end, within the bounds.
-fn on_surface(
-    ground: &MeshGround,
-    bounds: Option<SpaceBounds>,
-    end: &'static str,
-    at: Point3<f64>,
-) -> Result<MeshContact, MeshRouteError> {
-    let contact = ground.contact(at).map_err(|problem| MeshHopError::NoContact { end, problem })?;
+/// A contact, if it lies within the bounds.
+fn within(bounds: Option<SpaceBounds>, end: &'static str, contact: MeshContact) -> Result<MeshContact, MeshRouteError> {
     match bounds {
         Some(bounds) if !bounds.contain(&contact.point_m()) => {
             Err(MeshRouteError::OutsideBounds { end, point_m: contact.point_m(), bounds })

@@ -196,6 +196,12 @@ fn what_has_no_meaning_on_a_mesh_is_refused_by_name() {
     }
     let ran = desk.run(&["plan", "chain.csv", "--set", "search.contacts_max=9", "--body", "moon"]);
     assert!(ran.status == 2 && ran.stderr.contains("search.contacts_max is for free routes over a mesh"), "{ran:?}");
+    // A point far away is moved to the mesh, and that is more than a line of the answer.
+    let ran = desk.run(&["plan", "room.toml", "--start", "1,1,-40"]);
+    assert!(ran.status == 1 && ran.stderr.contains("the start was moved 39.1152"), "{ran:?}");
+    // The keys of the search have their effect on trials too.
+    let ran = desk.run(&["simulate", "room.toml", "--trials", "10", "--set", "search.contacts_max=90"]);
+    assert!(ran.status == 0 && !ran.stderr.contains("has no effect"), "{ran:?}");
     // The command line gives positions in space, and a start on the goal needs no hop.
     let ran = desk.run(&["plan", "room.toml", "--start", "7,3,0.3", "--goal", "7,3,0"]);
     assert!(ran.status == 0 && ran.stdout.contains("traversable, 0 hops"), "{ran:?}");

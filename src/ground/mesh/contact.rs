@@ -135,8 +135,7 @@ impl MeshGround {
         }
         let tree = self.tree();
         let nearest = tree.nearest(at);
-        let bounds = tree.mesh().bounds();
-        let size_m = (bounds.map.max - bounds.map.min).amax().max(bounds.high_m - bounds.low_m);
+        let size_m = tree.mesh().bounds().size_m();
         if nearest.distance_m > TYPED * size_m && tree.is_buried(at) {
             let (nearest_m, distance_m) = (nearest.point, nearest.distance_m);
             return Err(NoMeshContact::InsideRock { point_m: at, nearest_m, distance_m });

@@ -70,7 +70,7 @@ impl Cut {
         self.from.1 + (self.to.1 - self.from.1) * ((distance_m - self.from.0) / (self.to.0 - self.from.0))
     }
 
-    /// The part between two distances; `None` if there is none.
+    /// The part between two distances; `None` if the cut has no part there.
     fn between(&self, from_m: f64, to_m: f64) -> Option<Self> {
         if self.to.0 < from_m || self.from.0 > to_m {
             return None;

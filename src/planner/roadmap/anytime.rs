@@ -67,7 +67,7 @@ pub struct RoadmapRound {
     pub contacts: usize,
     /// Windows so far.
     pub windows: usize,
-    /// What the best path takes so far; `None` while there is none.
+    /// What the best path takes so far; `None` before a path is found.
     pub totals: Option<Amounts>,
 }
 

@@ -6,7 +6,7 @@
 //!    S   o'    '--o---G     the best path by an objective, within budgets; then more contacts about it
 //! ```
 //!
-//! A path of a roadmap exists. That a roadmap has none, or none better, proves nothing: more contacts may give one.
+//! A path of a roadmap exists. Where a roadmap has no path, or no better one, nothing is proved: more contacts may give one.
 //!
 //! Source: Campana and Laumond 2016, *Ballistic motion planning*, whose roadmaps sample the arcs as well; the exact windows make their
 //! convergence property true.

@@ -1,4 +1,4 @@
-//! The best path of a roadmap, and what lies between start and goal where there is none.
+//! The best path of a roadmap, and what lies between start and goal where no path is found.
 
 use nalgebra::Point3;
 
@@ -76,17 +76,9 @@ impl Roadmap {
         if let Some(path) = found.path {
             return Ok(RoadmapRoute { path: Some(path_of(&legs, &path)), within: true, capped: found.capped, ..no });
         }
-        let mut capped = found.capped;
-        let mut best = without_budgets(&legs, ends, objective, budgets, cap)?;
-        if best.is_none() {
-            // Labels of every path were left out: that of the fewest hops is a path all the same.
-            let fewest = search(&legs, ends, &Objective::of(Amount::Hops), &Budgets::NONE, LabelCap::NONE)?.path;
-            best = fewest.map(|path| (path, Vec::new()));
-            capped = true;
-        }
-        let Some((path, unmet)) = best else { return Ok(no) };
-        let within = budgets.exceeded_by(&path.totals).next().is_none();
-        Ok(RoadmapRoute { path: Some(path_of(&legs, &path)), within, unmet, capped })
+        let Some(best) = without_budgets(&legs, ends, objective, budgets, cap)? else { return Ok(no) };
+        let capped = found.capped || best.capped;
+        Ok(RoadmapRoute { path: Some(path_of(&legs, &best.path)), within: best.within, unmet: best.unmet, capped })
     }
 
     /// The Pareto front of hops against another amount, within budgets, in ascending order of hops, and whether labels were left out.

@@ -36,6 +36,13 @@ pub struct MeshBounds {
     pub high_m: f64,
 }
 
+impl MeshBounds {
+    /// The longest edge of the box, m.
+    pub fn size_m(&self) -> f64 {
+        (self.map.max - self.map.min).amax().max(self.high_m - self.low_m)
+    }
+}
+
 impl Mesh {
     /// A mesh from its vertices, m, and its triangles, each three indices of vertices from 0.
     ///
