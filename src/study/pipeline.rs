@@ -413,6 +413,13 @@ impl Transect {
     ) -> Result<Self, TerrainError> {
         let read = read_mesh_with(file, scale, no_data)?;
         let (mut legs, mut warnings) = (Vec::new(), read.warnings);
+        if !read.mesh.faces().are_bare() {
+            warnings.push(
+                "the mesh states the friction, the rest slope or a keep-out of its faces, which a slice along its upper surface leaves out: the \
+                 surface of the scenario counts"
+                    .to_owned(),
+            );
+        }
         let mut begin = from;
         for end in via.iter().copied().chain([to]) {
             let slice = slice_mesh(&read.mesh, begin, end)?;

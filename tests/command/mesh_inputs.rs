@@ -105,6 +105,12 @@ fn faces_of_a_ply_have_their_own_surface() {
     desk.write("top.ply", ply("0.5 0", "nan 1"));
     let ran = hop(&desk, "top.ply", &[]);
     assert!(ran.status == 1 && ran.stdout.contains("keep-out"), "{ran:?}");
+    // A slice leaves them out, and says so.
+    let ran = desk.run(&["slice", "top.ply", "--from", "1,1", "--to", "9,1"]);
+    assert!(ran.status == 0 && ran.stderr.contains("the mesh states the friction"), "{ran:?}");
+    desk.write("top.ply", ply("nan 0", "nan 0"));
+    let ran = desk.run(&["slice", "top.ply", "--from", "1,1", "--to", "9,1"]);
+    assert!(ran.status == 0 && !ran.stderr.contains("the mesh states"), "{ran:?}");
     desk.write("top.ply", ply("-1 0", "nan 1"));
     let ran = hop(&desk, "top.ply", &[]);
     assert!(ran.status == 2 && ran.stderr.contains("face 1 of the PLY"), "{ran:?}");
