@@ -1,7 +1,5 @@
 //! The fewest hops from every node of a DEM to the goal, or from the start to every node: breadth first, level by level.
 
-use std::{cmp::Reverse, collections::BinaryHeap};
-
 use rayon::prelude::*;
 
 use super::{
@@ -11,7 +9,7 @@ use super::{
 };
 use crate::{
     ground::MapPosition,
-    progress::{Cancelled, Meter},
+    progress::{Cancelled, Meter, PairCounter},
     quantity::MapPoint,
 };
 
@@ -56,10 +54,6 @@ fn distance_m(at: MapPoint, [from, to]: [MapPoint; 2]) -> f64 {
     (away - along * share).norm()
 }
 
-/// Space of one thread: the nodes of the level before that are within reach, by the bits of their distance squared, which are in the order
-/// of the distances.
-type Near = Vec<Reverse<(u64, SurfaceNode)>>;
-
 impl FewestHops {
     /// Searches from one end.
     ///
@@ -87,11 +81,11 @@ impl FewestHops {
                 break;
             }
             meter.check()?;
-            let asked = found.beside(surface, side, &level);
-            let evaluate = |(counter, near): &mut (_, Near), node: &SurfaceNode| {
-                found.is_reached(surface, side, (within, *node, hops - 1), counter, near)
+            let asked = nodes_beside(surface, side, &level, |node| found.hops[node.index()] == UNKNOWN);
+            let evaluate = |counter: &mut PairCounter<'_>, node: &SurfaceNode| {
+                found.is_reached(surface, side, (within, *node, hops - 1), counter)
             };
-            let begin = || (meter.counter(), Near::new());
+            let begin = || meter.counter();
             let reached: Vec<(bool, u64)> =
                 asked.par_iter().with_min_len(16).map_init(begin, evaluate).collect::<Result<_, _>>()?;
             level.clear();
@@ -114,24 +108,8 @@ impl FewestHops {
 
     /// All nodes with hops.
     pub(super) fn all(&self) -> impl Iterator<Item = SurfaceNode> + '_ {
-        #[expect(clippy::cast_possible_truncation, reason = "nodes are numbered in 32 bits")]
-        let known = |(node, hops): (usize, &u32)| (*hops != UNKNOWN).then_some(SurfaceNode(node as u32));
+        let known = |(node, hops): (usize, &u32)| (*hops != UNKNOWN).then_some(SurfaceNode::of_index(node));
         self.hops.iter().enumerate().filter_map(known)
-    }
-
-    /// The nodes without hops that may be within reach of a level, each once.
-    fn beside(&self, surface: &SurfaceHops<'_>, side: Side, level: &[SurfaceNode]) -> Vec<SurfaceNode> {
-        let (nodes, lattice) = (surface.nodes, surface.nodes.lattice());
-        let reaches_m = level.iter().filter_map(|node| surface.position(*node)).map(|at| surface.reach_m(&at, side));
-        let (down, aside) = lattice.cells_within(reaches_m.fold(0.0, f64::max));
-        let mut cells: Vec<_> = level.iter().map(|node| nodes.cell(*node)).collect();
-        cells.sort_unstable();
-        let near = cells_beside(&cells, lattice.size(), (down + 1, aside + 1));
-        let of_lattice = near.iter().flat_map(|(row, ranges)| {
-            ranges.iter().flat_map(move |cols| cols.clone().map(move |col| SurfaceNode::of_lattice(lattice, (col, *row))))
-        });
-        let beside = nodes.single_places().filter(|(_, at)| holds(&near, lattice.cell_near(*at))).map(|(node, _)| node);
-        of_lattice.chain(beside).filter(|node| self.hops[node.index()] == UNKNOWN).collect()
     }
 
     /// Whether a feasible hop joins a node to one with so many hops, and how many were computed.
@@ -140,20 +118,12 @@ impl FewestHops {
         surface: &SurfaceHops<'_>,
         side: Side,
         (within, node, hops): (&Within<'_>, SurfaceNode, u32),
-        counter: &mut crate::progress::PairCounter<'_>,
-        near: &mut Near,
+        counter: &mut PairCounter<'_>,
     ) -> Result<(bool, u64), Cancelled> {
         let Some(at) = surface.position(node).filter(|at| within.holds(at, hops + 1)) else { return Ok((false, 0)) };
         let mut pairs = 0;
-        let mut waiting = std::mem::take(near);
-        for known in surface.about(&at, side.other()).filter(|known| self.hops[known.index()] == hops) {
-            let away2 = surface.nodes.map_point(known).map(|there| (there - at.at).norm_squared());
-            waiting.extend(away2.map(|away2| Reverse((away2.to_bits(), known))));
-        }
         // The shortest hop is the most likely one.
-        let mut waiting = BinaryHeap::from(waiting);
-        let mut is_reached = false;
-        while let Some(Reverse((_, known))) = waiting.pop().filter(|_| !is_reached) {
+        for known in surface.nearest_first(node, &at, side.other()).filter(|known| self.hops[known.index()] == hops) {
             let Some(there) = surface.position(known) else { continue };
             let (nodes, ends) = match side {
                 Side::Start => ([known, node], [&there, &at]),
@@ -162,10 +132,31 @@ impl FewestHops {
             let Some(sight) = surface.sight(ends[0], ends[1]) else { continue };
             pairs += 1;
             counter.pair()?;
-            is_reached = surface.between(nodes, ends, sight).is_some();
+            if surface.between(nodes, ends, sight).is_some() {
+                return Ok((true, pairs));
+            }
         }
-        *near = waiting.into_vec();
-        near.clear();
-        Ok((is_reached, pairs))
+        Ok((false, pairs))
     }
+}
+
+/// The nodes of some kind that may be within reach of a level, each once: those to which hops from it may lead, or from the goal's side those
+/// from which hops to it may.
+pub(super) fn nodes_beside(
+    surface: &SurfaceHops<'_>,
+    side: Side,
+    level: &[SurfaceNode],
+    wanted: impl Fn(SurfaceNode) -> bool,
+) -> Vec<SurfaceNode> {
+    let (nodes, lattice) = (surface.nodes, surface.nodes.lattice());
+    let reaches_m = level.iter().filter_map(|node| surface.position(*node)).map(|at| surface.reach_m(&at, side));
+    let (down, aside) = lattice.cells_within(reaches_m.fold(0.0, f64::max));
+    let mut cells: Vec<_> = level.iter().map(|node| nodes.cell(*node)).collect();
+    cells.sort_unstable();
+    let near = cells_beside(&cells, lattice.size(), (down + 1, aside + 1));
+    let of_lattice = near.iter().flat_map(|(row, ranges)| {
+        ranges.iter().flat_map(move |cols| cols.clone().map(move |col| SurfaceNode::of_lattice(lattice, (col, *row))))
+    });
+    let beside = nodes.single_places().filter(|(_, at)| holds(&near, lattice.cell_near(*at))).map(|(node, _)| node);
+    of_lattice.chain(beside).filter(|node| wanted(*node)).collect()
 }

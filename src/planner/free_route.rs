@@ -1,11 +1,12 @@
 //! The best path from a start to a goal over nodes on a DEM, found towards the goal.
 //!
 //! First the fewest hops of nodes to the goal, level by level ([`FewestHops`]): no path needs fewer, which is a bound for the search by the
-//! objective ([`search`]), the best there is where hops come first. That search then looks at hops of paths of the fewest hops alone.
+//! objective ([`search`]). Where hops come first, paths of the fewest hops are compared layer by layer instead ([`best_of_fewest`]).
 
 use super::{
     Amount, Amounts, Budgets, FoundPath, LabelCap, Objective, SearchedCommands, SurfaceNode, SurfaceNodes, TooManyNodes,
     UnmetBudget,
+    by_layers::best_of_fewest,
     fewest_hops::{FewestHops, Within},
     front,
     route_gap::RouteGap,
@@ -211,10 +212,10 @@ impl FreeRoute {
     }
 
     /// The same with what one level of the search for the fewest hops takes at most: all nodes as those of the level before, as those that it
-    /// asks, and with what each of them answers.
-    pub const fn bytes_max(nodes: &SurfaceNodes) -> u64 {
+    /// asks, and with what each of them answers; and the steps within reach of a node.
+    pub fn bytes_max(ground: &DemGround, nodes: &SurfaceNodes) -> u64 {
         let of_level = (2 * size_of::<SurfaceNode>() + size_of::<(bool, u64)>()) as u64;
-        Self::bytes(nodes) + of_level * nodes.count() as u64
+        Self::bytes(nodes) + of_level * nodes.count() as u64 + SurfaceHops::bytes(ground, nodes)
     }
 }
 
@@ -297,15 +298,13 @@ impl<'a> Asked<'a> {
         let (mut work, mut capped) = (RouteWork { pairs_tested: self.pairs, leading: levels.known, ..RouteWork::default() }, false);
         let mut best = None;
         if allows_fewest {
-            // Every path of more hops than the fewest is worse.
-            let of_fewest = budgets.with(Amount::Hops, f64::from(fewest)).unwrap_or(*budgets);
-            let counted = match (hops_decide, most) {
-                (true, _) => Counted::OfFewest,
-                (false, Some(_)) => Counted::Known,
-                (false, None) => Counted::All,
-            };
+            let counted = if hops_decide || most.is_some() { Counted::Known } else { Counted::All };
             let legs = self.legs((levels, counted), question);
-            let result = search(&legs, legs.ends(), objective, if hops_decide { &of_fewest } else { budgets }, cap)?;
+            let result = if hops_decide {
+                best_of_fewest(&legs, levels, (objective, cap), &self.meter)?
+            } else {
+                search(&legs, legs.ends(), objective, budgets, cap)?
+            };
             (work.reached, work.settled, capped) = (result.reached, result.settled, result.capped);
             work.pairs_tested += legs.pairs();
             best = result.path.map(|path| (self.path(&legs, &path), path, Vec::new()));
@@ -335,7 +334,7 @@ impl<'a> Asked<'a> {
         let arcs = path.steps.iter().filter_map(|step| legs.arc(step));
         RoutePath {
             places,
-            choices: path.steps.iter().map(|step| legs.choice(step.command)).collect(),
+            choices: path.steps.iter().map(|step| legs.offers.choice(step.command)).collect(),
             cost: arcs.fold(Cost::default(), |cost, arc| cost + self.how.effort.cost(&arc, 1)),
             totals: path.totals,
         }

@@ -77,9 +77,15 @@ impl SurfaceLattice {
     }
 
     /// The greater distance of neighbouring nodes in a row or a column, m.
-    #[expect(clippy::cast_precision_loss, reason = "counts of nodes stay far below 2^53")]
     pub fn spacing_m(&self) -> f64 {
-        self.map.dx_m().max(self.map.dy_m()) / self.n as f64
+        let (aside_m, down_m) = self.spacings_m();
+        aside_m.max(down_m)
+    }
+
+    /// The distances of neighbouring nodes in a row and in a column, m.
+    #[expect(clippy::cast_precision_loss, reason = "counts of nodes stay far below 2^53")]
+    pub(super) fn spacings_m(&self) -> (f64, f64) {
+        (self.map.dx_m() / self.n as f64, self.map.dy_m() / self.n as f64)
     }
 
     /// Its rows and columns.

@@ -19,10 +19,15 @@ const NEARLY_ALONG: f64 = 1e-6;
 pub struct SurfaceNode(pub(super) u32);
 
 impl SurfaceNode {
-    /// That of a column and a row of the lattice.
+    /// That of a number.
     #[expect(clippy::cast_possible_truncation, reason = "at most MOST")]
+    pub(super) const fn of_index(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    /// That of a column and a row of the lattice.
     pub(super) const fn of_lattice(lattice: &SurfaceLattice, (i, j): (usize, usize)) -> Self {
-        Self(lattice.index(i, j) as u32)
+        Self::of_index(lattice.index(i, j))
     }
 
     pub(super) const fn index(self) -> usize {
@@ -114,8 +119,7 @@ impl SurfaceNodes {
 
     /// The single places.
     pub(super) fn single_places(&self) -> impl Iterator<Item = (SurfaceNode, MapPoint)> + '_ {
-        #[expect(clippy::cast_possible_truncation, reason = "at most MOST")]
-        let numbered = |(number, place): (usize, &MapPosition)| (SurfaceNode(number as u32), place.at);
+        let numbered = |(number, place): (usize, &MapPosition)| (SurfaceNode::of_index(number), place.at);
         (self.lattice.count()..).zip(&self.places).map(numbered)
     }
 
@@ -131,14 +135,6 @@ impl SurfaceNodes {
         )
     }
 
-    /// Where a node lies on the map.
-    pub(super) fn map_point(&self, node: SurfaceNode) -> Option<MapPoint> {
-        match node.index().checked_sub(self.lattice.count()) {
-            Some(place) => self.places.get(place).map(|place| place.at),
-            None => Some(self.lattice.at(self.lattice.node(node.index()))),
-        }
-    }
-
     /// A node on the ground; `None` without elevation.
     pub fn position(&self, ground: &DemGround, node: SurfaceNode) -> Option<MapPosition> {
         match node.index().checked_sub(self.lattice.count()) {
@@ -149,7 +145,12 @@ impl SurfaceNodes {
 
     /// All nodes in a square about a position, those of the lattice first.
     pub(super) fn about(&self, at: MapPoint, distance_m: f64) -> impl Iterator<Item = SurfaceNode> + '_ {
-        let of_lattice = self.lattice.about(at, distance_m).map(|(i, j)| self.lattice.index(i, j));
+        let of_lattice = self.lattice.about(at, distance_m).map(|node| SurfaceNode::of_lattice(&self.lattice, node));
+        of_lattice.chain(self.places_about(at, distance_m))
+    }
+
+    /// The single places in a square about a position.
+    pub(super) fn places_about(&self, at: MapPoint, distance_m: f64) -> impl Iterator<Item = SurfaceNode> + '_ {
         let key = move |at: MapPoint| if self.by_easting { at.x } else { at.y };
         let place = |number: &u32| self.places[*number as usize];
         let first = self.sorted.partition_point(|number| key(place(number).at) < key(at) - distance_m);
@@ -158,16 +159,18 @@ impl SurfaceNodes {
             (key(MapPoint::origin() + away) <= distance_m).then_some((number, away))
         });
         let beside = in_strip.filter(move |(_, away)| away.amax() <= distance_m).map(|(number, _)| self.lattice.count() + number);
-        #[expect(clippy::cast_possible_truncation, reason = "at most MOST")]
-        of_lattice.chain(beside).map(|index| SurfaceNode(index as u32))
+        beside.map(SurfaceNode::of_index)
+    }
+
+    /// The column and row of a node of the lattice; `None` for a single place.
+    pub(super) const fn of_lattice(&self, node: SurfaceNode) -> Option<(usize, usize)> {
+        if node.index() < self.lattice.count() { Some(self.lattice.node(node.index())) } else { None }
     }
 
     /// Whether the line between two nodes may run along edges of the triangulated DEM, where two facets bound it: decided in integers where
     /// both are nodes of the lattice.
     pub(super) fn may_run_along_edges(&self, ground: &DemGround, nodes: [SurfaceNode; 2], at: [MapPoint; 2]) -> bool {
-        if let [Some(from), Some(to)] =
-            nodes.map(|node| (node.index() < self.lattice.count()).then(|| self.lattice.node(node.index())))
-        {
+        if let [Some(from), Some(to)] = nodes.map(|node| self.of_lattice(node)) {
             return self.lattice.runs_along_edges(from, to);
         }
         let map = ground.terrain().dem().georeference();

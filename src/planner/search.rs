@@ -303,14 +303,19 @@ impl<'g, G: LegGraph> Run<'g, G> {
         }
         debug_assert_eq!(at.node as usize, self.start, "a path begins at the start");
         steps.reverse();
-        let mut totals = Amounts::NONE;
-        for step in &steps {
-            let mut only = OnlyLeg { step: *step, amounts: Amounts::NONE };
-            self.graph.successors(step.from, &mut only)?;
-            totals = totals.then(&only.amounts);
-        }
-        Ok(FoundPath { steps, totals })
+        path_along(self.graph, steps)
     }
+}
+
+/// The path of some legs, with what they take from the start.
+pub(super) fn path_along(graph: &impl LegGraph, steps: Vec<PathStep>) -> Result<FoundPath, Cancelled> {
+    let mut totals = Amounts::NONE;
+    for step in &steps {
+        let mut only = OnlyLeg { step: *step, amounts: Amounts::NONE };
+        graph.successors(step.from, &mut only)?;
+        totals = totals.then(&only.amounts);
+    }
+    Ok(FoundPath { steps, totals })
 }
 
 /// The number of a node in a label.

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use nalgebra::Vector2;
 
-use super::{SurfaceNode, SurfaceNodes};
+use super::{SurfaceNode, SurfaceNodes, nearest_steps::NearestSteps};
 use crate::{
     ballistics::LineOfSight,
     ground::{DemGround, HopReach, MapPosition},
@@ -12,6 +12,9 @@ use crate::{
     quantity::{SlopeInterval, VertexId},
     world::Limit,
 };
+
+/// A reach with what may be lost to rounding.
+const ROUNDED: f64 = 1.0 + 1e-9;
 
 /// From which end nodes are searched, and which way the hops between them then lead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,13 +49,21 @@ pub(super) struct SurfaceHops<'s> {
     pub(super) ground: &'s DemGround,
     pub(super) nodes: &'s SurfaceNodes,
     reach: HopReach,
+    steps: NearestSteps,
     /// Hops that the walk over the triangles has and their slice has not.
     refused: HashSet<[SurfaceNode; 2]>,
 }
 
 impl<'s> SurfaceHops<'s> {
     pub(super) fn new(ground: &'s DemGround, nodes: &'s SurfaceNodes) -> Self {
-        Self { ground, nodes, reach: HopReach::of(ground), refused: HashSet::new() }
+        let reach = HopReach::of(ground);
+        let steps = NearestSteps::within(nodes.lattice(), reach.longest_m() * ROUNDED);
+        Self { ground, nodes, reach, steps, refused: HashSet::new() }
+    }
+
+    /// The bytes that they take at most.
+    pub(super) fn bytes(ground: &DemGround, nodes: &SurfaceNodes) -> u64 {
+        NearestSteps::bytes(nodes.lattice(), HopReach::of(ground).longest_m() * ROUNDED)
     }
 
     pub(super) fn position(&self, node: SurfaceNode) -> Option<MapPosition> {
@@ -70,7 +81,17 @@ impl<'s> SurfaceHops<'s> {
             Side::Start => self.reach.run_m(at),
             Side::Goal => self.reach.run_into_m(at),
         };
-        reach_m * (1.0 + 1e-9)
+        reach_m * ROUNDED
+    }
+
+    /// The same nodes, those of the lattice in ascending order of their distance.
+    pub(super) fn nearest_first(&self, node: SurfaceNode, at: &MapPosition, side: Side) -> impl Iterator<Item = SurfaceNode> + '_ {
+        let (lattice, reach_m) = (self.nodes.lattice(), self.reach_m(at, side));
+        let near = self.nodes.of_lattice(node).map(|cell| self.steps.about(cell, reach_m));
+        // About a place beside the lattice, of which there are few, in any order.
+        let far = if near.is_none() { Some(lattice.about(at.at, reach_m).map(|(i, j)| lattice.index(i, j))) } else { None };
+        let of_lattice = near.into_iter().flatten().chain(far.into_iter().flatten());
+        of_lattice.map(SurfaceNode::of_index).chain(self.nodes.places_about(at.at, reach_m))
     }
 
     /// The length of the longest hop over level ground, m.

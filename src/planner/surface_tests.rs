@@ -1,6 +1,7 @@
 //! The search over a DEM with its bounds against the same without any, and the fewest hops against all pairs of nodes.
 
 use super::{
+    by_layers::best_of_fewest,
     fewest_hops::{FewestHops, Within},
     surface_hops::{Side, SurfaceHops},
     surface_legs::Counted,
@@ -81,6 +82,7 @@ fn bounds_change_no_best_total() {
             vec![Amount::Energy],
             vec![Amount::FlightTime, Amount::Hops],
             vec![Amount::Hops, Amount::PeakSpeed],
+            vec![Amount::Hops, Amount::Distance, Amount::FlightTime, Amount::PeakSpeed],
             vec![Amount::ArcLength],
         ] {
             let objective = Objective::new(objective).unwrap();
@@ -98,7 +100,9 @@ fn bounds_change_no_best_total() {
             let plain = searched(Counted::All, false);
             let mut others = vec![searched(Counted::All, true), searched(Counted::Known, true)];
             if first == Amount::Hops {
-                others.push(searched(Counted::OfFewest, true));
+                let offered = (SearchedCommands::Distinct, TakeoffChoice::LeastSpeed);
+                let legs = SurfaceLegs::new(&surface, (start, goal), offered, None, (&levels, Counted::Known), &meter);
+                others.push(best_of_fewest(&legs, &levels, (&objective, LabelCap::default()), &meter).unwrap());
             }
             for other in others {
                 assert_eq!(other.path.is_some(), plain.path.is_some(), "case {case}: {objective}");

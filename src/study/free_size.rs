@@ -27,7 +27,7 @@ impl RouteSize {
             nodes: nodes.count() as u64,
             pairs_max: nodes.pairs_max(ground),
             elevations_bytes: dem.elevations_bytes(),
-            nodes_bytes: FreeRoute::bytes_max(nodes),
+            nodes_bytes: FreeRoute::bytes_max(ground, nodes),
             bytes_per_label: LabelCap::bytes_per_label(objective, budgets),
         }
     }
