@@ -33,8 +33,8 @@ use crate::{
 /// The choices of a hop.
 const CHOICES: [TakeoffChoice; 3] = [TakeoffChoice::LeastSpeed, TakeoffChoice::MidRange, TakeoffChoice::LeastTime];
 
-/// The amounts of a path without errors that add up.
-const SUMS: [Amount; 8] = [
+/// All amounts of a path without errors.
+const ALL: [Amount; 9] = [
     Amount::Hops,
     Amount::TakeoffSpeed,
     Amount::DeltaV,
@@ -43,7 +43,11 @@ const SUMS: [Amount; 8] = [
     Amount::MissionTime,
     Amount::Distance,
     Amount::ArcLength,
+    Amount::PeakSpeed,
 ];
+
+/// Those that add up.
+const SUMS: [Amount; 8] = *ALL.first_chunk().unwrap();
 
 /// Every pair of nodes by its slice and the hop test.
 struct Every {
@@ -94,7 +98,7 @@ impl Every {
         Self { places, legs, start, goal }
     }
 
-    /// The best totals to every node in the order of a list of amounts that add up, by rounds until nothing changes.
+    /// The best totals to every node in the order of a list of amounts, of which only the last may not add up, by rounds until nothing changes.
     fn best(&self, amounts: &[Amount]) -> Option<Vec<f64>> {
         let mut best: Vec<Option<Vec<f64>>> = vec![None; self.places.len()];
         best[self.start] = Some(vec![0.0; amounts.len()]);
@@ -105,7 +109,8 @@ impl Every {
                 let here = best[from].clone().unwrap();
                 for (to, choices) in &self.legs[from] {
                     for leg in choices {
-                        let there: Vec<f64> = amounts.iter().zip(&here).map(|(amount, sum)| sum + leg.of(*amount)).collect();
+                        let joined = |(amount, sum): (&Amount, &f64)| amount.join(*sum, leg.of(*amount));
+                        let there: Vec<f64> = amounts.iter().zip(&here).map(joined).collect();
                         // Rounding alone changes nothing.
                         let is_less = best[*to].as_ref().is_none_or(|known| {
                             let differs = known.iter().zip(&there).find(|(a, b)| (*a - *b).abs() > 1e-9 * (1.0 + a.abs()));
@@ -135,7 +140,7 @@ impl Every {
             }
             for (to, choices) in &self.legs[from] {
                 for leg in choices {
-                    let there = [here[0] + leg.of(first), here[1] + leg.of(second)];
+                    let there = [first.join(here[0], leg.of(first)), here[1] + leg.of(second)];
                     let is_worse = |known: &[f64; 2]| known[0] <= there[0] * (1.0 + 1e-12) && known[1] <= there[1] * (1.0 + 1e-12);
                     if there[1] > most * (1.0 + 1e-9) || sets[*to].iter().any(is_worse) {
                         continue;
@@ -216,15 +221,15 @@ fn check_legs(ground: &DemGround, route: &FreeRoute, what: &str) {
     }
 }
 
-/// Objectives of one to three amounts, budgets on another amount, and a front, over one ground.
-fn compare(draw: &mut Draw, ground: &DemGround, (n, objectives): (u32, usize), ends: [MapPoint; 2], what: &str) -> Option<u64> {
+/// Objectives of one to three amounts with each of some as the first, budgets on another amount, and a front, over one ground.
+fn compare(draw: &mut Draw, ground: &DemGround, (n, firsts): (u32, &[Amount]), ends: [MapPoint; 2], what: &str) -> Option<u64> {
     let (every, nodes) = (Every::of(ground, n, ends), nodes(ground, n, ends, None));
     let distinct = SearchedCommands::Distinct;
     let fewest = every.best(&[Amount::Hops]);
-    let begin = draw.below(8);
-    for first in SUMS.into_iter().cycle().skip(begin).take(objectives) {
+    for first in firsts.iter().copied() {
         let mut amounts = vec![first];
-        amounts.extend([SUMS[draw.below(8)], SUMS[draw.below(8)]].into_iter().filter(|other| *other != first));
+        let others = [SUMS[draw.below(8)], ALL[draw.below(9)]].into_iter().filter(|other| *other != first);
+        amounts.extend(others.filter(|_| first.adds_up()));
         amounts.dedup();
         let objective = Objective::new(amounts.clone()).unwrap();
         let route = asked(ground, &nodes, ends, (&objective, &Budgets::NONE), distinct);
@@ -301,7 +306,7 @@ fn random_grounds_have_the_best_routes_of_every_pair_of_nodes() {
     for number in 0..60 {
         let ground = random_world(draw, 5).ground();
         let Some(ends) = random_ends(draw, &ground) else { continue };
-        match compare(draw, &ground, (1 + number % 2, 8), ends, &format!("ground {number}")) {
+        match compare(draw, &ground, (1 + number % 2, &ALL), ends, &format!("ground {number}")) {
             Some(hops) => several += u32::from(hops > 1),
             None => not += 1,
         }
@@ -318,7 +323,8 @@ fn compare_cut_outs(file: &str, (gravity_m_s2, cuts): (f64, [(usize, u32, f64); 
     }
     let dem = read_dem(&path).unwrap();
     let (draw, mut reached) = (&mut Draw::seeded(seed), 0);
-    for (side, n, posts) in cuts {
+    // Each amount is the first of an objective over one of the cut-outs.
+    for ((side, n, posts), firsts) in cuts.into_iter().zip(ALL.chunks(3)) {
         let first = Post { row: draw.below(dem.rows() - side), col: draw.below(dem.cols() - side) };
         let speed_m_s = (gravity_m_s2 * posts * dem.georeference().dx_m()).sqrt();
         let limits = HopperLimits {
@@ -333,7 +339,7 @@ fn compare_cut_outs(file: &str, (gravity_m_s2, cuts): (f64, [(usize, u32, f64); 
         let ground = world.ground();
         let Some(ends) = random_ends(draw, &ground) else { continue };
         let what = format!("{file} from row {}, column {}, n = {n}", first.row, first.col);
-        reached += u32::from(compare(draw, &ground, (n, 2), ends, &what).is_some_and(|hops| hops > 1));
+        reached += u32::from(compare(draw, &ground, (n, firsts), ends, &what).is_some_and(|hops| hops > 1));
     }
     assert!(reached > 0, "no goal of {file} in several hops");
 }
