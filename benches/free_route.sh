@@ -47,6 +47,6 @@ TOML
 else
     echo "skipped: $dem is absent"
 fi
-"$program" synth --rows 2048 --cols 2048 --spacing-m 1 --seed 1 --craters -o "$work/craters.tif" --quiet >"$work/synth"
+"$program" synth --rows 2048 --cols 2048 --spacing-m 1 --seed 1 --craters -o "$work/craters.tif" >"$work/synth"
 measured "$program" map "$work/craters.tif" --start 1024,1024 --set body.name=moon --set hopper.takeoff_speed_max_m_s=4.41 \
     --set hopper.landing_speed_max_m_s=4.41 --set surface.friction_coefficient=0.6 --objective energy -o "$work/hops.tif" --quiet

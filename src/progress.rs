@@ -273,6 +273,21 @@ impl<'p> Meter<'p> {
         Ok(())
     }
 
+    /// The same after so many pairs of earlier stages of the same work.
+    pub(crate) fn after(self, pairs: u64) -> Self {
+        self.pairs.store(pairs, Ordering::Relaxed);
+        self
+    }
+
+    /// Whether the stage goes on: to be asked before each of many pieces of work that count no pairs. It reports now and then.
+    ///
+    /// # Errors
+    /// [`Cancelled`], now or before.
+    pub(crate) fn check_piece(&self, number: usize) -> Result<(), Cancelled> {
+        const PIECES_PER_REPORT: usize = 256;
+        if number.is_multiple_of(PIECES_PER_REPORT) { self.report(Detail::None) } else { self.check() }
+    }
+
     /// A counter of one thread's pairs.
     pub(crate) const fn counter(&self) -> PairCounter<'_> {
         PairCounter { meter: self, pending: 0 }

@@ -5,7 +5,7 @@ use std::{io, path::Path};
 use chta::{
     figure::{FigureError, Picture},
     path::HopPath,
-    study::Case,
+    study::{Case, MeshRouted},
     terrain::MapProjection,
 };
 
@@ -142,6 +142,16 @@ impl<'a> Files<'a> {
     pub(crate) fn json<T: Serialize>(&mut self, file: Option<Pending<'a>>, data: Option<&T>) -> Result<(), Failure> {
         if let (Some(file), Some(data)) = (file, data) {
             self.0.push((file, serde_json::to_vec(data)?));
+        }
+        Ok(())
+    }
+
+    /// Adds the roadmap of a plan over a mesh.
+    pub(crate) fn roadmap(&mut self, file: Option<Pending<'a>>, routed: &MeshRouted) -> Result<(), Failure> {
+        if let Some(file) = file {
+            let mut json = Vec::new();
+            routed.grown.roadmap.write_json(&routed.ground, &mut json)?;
+            self.0.push((file, json));
         }
         Ok(())
     }

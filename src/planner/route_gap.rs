@@ -84,8 +84,8 @@ fn each_pair(
     mut visit: impl FnMut([&MapPosition; 2]),
 ) -> Result<(), Cancelled> {
     let position = |node: SurfaceNode| surface.position(node);
-    for from in reached.all().filter_map(position) {
-        meter.check()?;
+    for (number, from) in reached.all().filter_map(position).enumerate() {
+        meter.check_piece(number)?;
         let reach_m = surface.reach_m(&from, Side::Start);
         for to in surface.about(&from, Side::Start).filter(|node| leading.of(*node).is_some()).filter_map(position) {
             if (to.at - from.at).norm_squared() <= reach_m * reach_m {

@@ -87,7 +87,8 @@ pub struct RoadmapRecord {
     pub windows: usize,
     /// Ordered pairs of contacts tested.
     pub pairs_tested: u64,
-    /// Why it stopped growing: `contacts`, `time`, `gain` (less than 1 % in two rounds) or `exhausted` (no more contacts of use).
+    /// Why it stopped growing: `contacts`, `time`, `gain` (less than 1 % in two rounds), `exhausted` (no more contacts of use), or `given`
+    /// where it was read from a file and start and goal alone were added; how its other contacts were drawn is then not known, and counts 0.
     pub ended_by: RoadmapEnd,
     /// Its rounds.
     pub history: Vec<RoadmapRoundRecord>,
@@ -241,6 +242,10 @@ pub fn mesh_plan_text(answer: &MeshPlanAnswer) -> String {
 
 fn roadmap_lines(sheet: &mut Sheet, roadmap: &RoadmapRecord) {
     let RoadmapRecord { contacts, by_area, on_facets, about_path, windows, pairs_tested, facets, facets_tried, .. } = roadmap;
+    if roadmap.ended_by == RoadmapEnd::Given {
+        sheet.line(format_args!("roadmap: {contacts} contacts, start and goal added to those read, {windows} windows"));
+        return;
+    }
     sheet.line(format_args!(
         "roadmap: {contacts} contacts ({by_area} by area, {on_facets} in the middle of facets, {about_path} about the path), {windows} windows, \
          pairs tested: {pairs_tested}"
@@ -261,7 +266,7 @@ fn roadmap_lines(sheet: &mut Sheet, roadmap: &RoadmapRecord) {
             RoadmapEnd::Contacts => "it ended with the most contacts (search.contacts_max)",
             RoadmapEnd::Time => "it ended by its time (search.time_max_s): a faster machine may find a better path",
             RoadmapEnd::Gain => "it ended when the best path gained less than 1 % in two rounds",
-            RoadmapEnd::Exhausted => "it ended when no more contacts of use were found",
+            RoadmapEnd::Exhausted | RoadmapEnd::Given => "it ended when no more contacts of use were found",
         }
     ));
 }

@@ -1,6 +1,6 @@
 //! A free route over a mesh: through caves, under overhangs, up and down walls.
 
-use std::{path::Path, time::Duration};
+use std::{fs::File, io::BufReader, path::Path, time::Duration};
 
 use nalgebra::Point3;
 
@@ -12,15 +12,14 @@ use super::{
     mesh_hop::{check_keys, mesh_ground, on_mesh},
 };
 use crate::{
-    ballistics::PathBounds,
     graph::proof::ProofVerdict,
     ground::{MeshContact, MeshGround},
     path::{HopPath, path_over_mesh},
     planner::{
         Amount, LabelCap, Objective,
         roadmap::{
-            ContactSampler, GrownRoadmap, NothingWithin, RoadmapEnd, RoadmapGap, RoadmapLimits, RoadmapPath, RoadmapQuestion,
-            SpaceBounds, grow_roadmap,
+            ContactSampler, GrownRoadmap, NothingWithin, Roadmap, RoadmapEnd, RoadmapFileError, RoadmapGap, RoadmapLimits,
+            RoadmapPath, RoadmapQuestion, SpaceBounds, grow_roadmap, over_roadmap,
         },
     },
     progress::{Cancelled, Progress},
@@ -40,6 +39,8 @@ pub struct MeshRouteQuestion<'a> {
     pub base: &'a Path,
     /// A front over the contacts of the roadmap.
     pub front: Option<Front>,
+    /// A roadmap (JSON) whose contacts are searched, with start and goal, in place of new ones.
+    pub roadmap: Option<&'a Path>,
 }
 
 /// Why there is no answer. That there is no path is one.
@@ -85,6 +86,12 @@ pub enum MeshRouteError {
         /// The stand-off, m.
         stand_off_m: f64,
     },
+    /// A roadmap that cannot be opened.
+    #[error("cannot open the roadmap ({0}), expected a readable JSON file of a plan over this mesh")]
+    NoRoadmap(#[source] std::io::Error),
+    /// A roadmap that is not one of this ground.
+    #[error(transparent)]
+    Roadmap(#[from] RoadmapFileError),
     /// Bounds without a facet.
     #[error("search.bounds_m: {0}")]
     NothingWithin(#[from] NothingWithin),
@@ -160,13 +167,20 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
         contacts_max: search.contacts(),
         time_max: search.time_max_s.map(|time_s| Duration::try_from_secs_f64(time_s).unwrap_or(Duration::MAX)),
     };
-    let grown = grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?;
+    let grown = match question.roadmap {
+        Some(file) => {
+            let read = File::open(file).map_err(MeshRouteError::NoRoadmap)?;
+            let roadmap = Roadmap::read_json(&ground, BufReader::new(read))?;
+            over_roadmap(&ground, roadmap, ends, &asked, progress)?
+        }
+        None => grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?,
+    };
     let facets = [sampler.facet_count(), sampler.turned()];
     let path = grown.route.path.as_ref().map(|found| hops_of_path(&ground, &grown, found)).transpose()?;
     path.as_ref().map(|path| flown_again(&ground, &grown, stand_off_m, path)).transpose()?;
     warnings.extend(path.iter().flat_map(|path| scenario.path_warnings(path)));
     warnings.extend(left_out(scenario, &grown, facets));
-    let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends));
+    let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends, progress)).transpose()?;
     let front = question.front.map(|front| front_of(scenario, &ground, &grown, (front.amount(), path.as_ref()))).transpose()?;
     let mut answer = answer((scenario, &ground), (given_m, &surface, *scale), (&grown, facets), (path.as_ref(), gap.as_ref()));
     (answer.front, answer.front_search) = front.unzip();
@@ -228,9 +242,7 @@ fn answer(
     let propellant_shortage = path.and_then(|path| PropellantShortage::of(&path.totals));
     let is_traversable = path.is_some() && propellant_shortage.is_none() && objective_record.is_met();
     let away = surface[1].point_m() - surface[0].point_m();
-    let limits = ground.envelope().hopper().limits();
-    let bounds =
-        PathBounds::new(limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s(), ground.envelope().gravity_m_s2());
+    let bounds = ground.speed_bounds();
     let [start, goal] = [0, 1].map(|i| MeshContactRecord::new(ground, &surface[i], given_m[i].coords.into()));
     // Contacts that stand off the surface are as far apart as their points.
     let [first, last] = [grown.ends.0, grown.ends.1].map(|node| grown.roadmap.contact(node).point_m());
@@ -259,6 +271,16 @@ fn answer(
 /// What the plan leaves out of a scenario, and what its contacts leave out of the mesh.
 fn left_out(scenario: &Scenario, grown: &GrownRoadmap, [facets, turned]: [usize; 2]) -> Vec<String> {
     let mut warnings = Vec::new();
+    let search = &scenario.mesh_search;
+    let drawing = [
+        ("search.contacts_max", search.contacts_max.is_some()),
+        ("search.time_max_s", search.time_max_s.is_some()),
+        ("search.seed", search.seed.is_some()),
+    ];
+    let unused: Vec<&str> = drawing.iter().filter(|(_, is_given)| *is_given).map(|(key, _)| *key).collect();
+    if grown.end == RoadmapEnd::Given && !unused.is_empty() {
+        warnings.push(format!("{}: without effect, since the contacts of the roadmap read stand as they are", unused.join(", ")));
+    }
     if scenario.uncertainty.is_some() {
         warnings.push(
             "a free route over a mesh is planned for exact commands: the errors of [uncertainty] choose none of its contacts and commands"

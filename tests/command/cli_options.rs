@@ -41,6 +41,9 @@ const OF_EVERY_COMMAND: &str = "--verbose";
 /// The bounds of inputs and of memory, tested in `pipes.rs`, `map_starts.rs` and `free_route.rs`.
 const ON_LARGE_INPUTS: [&str; 2] = ["--input-max-gib", "--memory-max-mib"];
 
+/// The roadmaps of plans over meshes, tested in `mesh_plan.rs`.
+const ON_MESHES: [&str; 2] = ["--roadmap", "--roadmap-output"];
+
 /// The mark of missing data, tested in `missing_data.rs`.
 const ON_MISSING_DATA: [&str; 1] = ["--no-data"];
 
@@ -1086,7 +1089,7 @@ fn every_option_changes_the_output() {
     for (command, trials) in all {
         let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
         let elsewhere = |option: &str| {
-            [&ON_A_PROJECTED_MAP[..], &ON_THE_TIME_ALONE, &ON_LARGE_INPUTS, &ON_MISSING_DATA].concat().contains(&option)
+            [&ON_A_PROJECTED_MAP[..], &ON_THE_TIME_ALONE, &ON_LARGE_INPUTS, &ON_MESHES, &ON_MISSING_DATA].concat().contains(&option)
         };
         let here: BTreeSet<_> = options(command).into_iter().filter(|option| !elsewhere(option)).collect();
         assert_eq!(tried, here, "{command}: an option without a trial, or the reverse");

@@ -206,3 +206,35 @@ fn what_has_no_meaning_on_a_mesh_is_refused_by_name() {
     let ran = desk.run(&["plan", "room.toml", "--start", "7,3,0.3", "--goal", "7,3,0"]);
     assert!(ran.status == 0 && ran.stdout.contains("traversable, 0 hops"), "{ran:?}");
 }
+
+/// A roadmap is written once and asked often: the same journey finds the same path over it, another one its own, and files that are no roadmap
+/// of this mesh are refused.
+#[test]
+fn a_roadmap_is_read_back_for_other_ends() {
+    let desk = room(0.8, 1.2);
+    let built = desk.json(&["plan", "room.toml", "--roadmap-output", "roadmap.json"]);
+    let again = desk.json(&["plan", "room.toml", "--roadmap", "roadmap.json"]);
+    assert_eq!((&again["roadmap"]["ended_by"], &again["verified"]), (&"given".into(), &true.into()));
+    assert_eq!(again["roadmap"]["contacts"].as_u64(), built["roadmap"]["contacts"].as_u64().map(|contacts| contacts + 2));
+    assert_eq!((&again["hops"], &again["totals"]), (&built["hops"], &built["totals"]));
+    let back = ["--start", "7,3,0.1", "--goal", "1,1,0.2"];
+    let other = desk.json(&[&["plan", "room.toml", "--roadmap", "roadmap.json", "--quiet"][..], &back].concat());
+    assert!(other["hops"].as_u64() > Some(0) && other["verified"] == true, "{}", other["hops"]);
+    let text = desk.run(&["plan", "room.toml", "--roadmap", "roadmap.json"]);
+    assert!(text.stdout.contains("start and goal added to those read"), "{}", text.stdout);
+    assert!(text.stderr.contains("search.contacts_max: without effect"), "{}", text.stderr);
+    let refused = |args: &[&str], parts: &[&str]| {
+        desk.refused(&[&["plan", "room.toml", "--quiet", "--roadmap"][..], args].concat(), parts);
+    };
+    refused(&["absent.json"], &["absent.json", "cannot open the roadmap", "expected a readable JSON file"]);
+    refused(&["room.obj"], &["room.obj", "this is no roadmap", "expected the JSON file of a plan over this mesh"]);
+    let faster = ["roadmap.json", "--set", "hopper.takeoff_speed_max_m_s=7"];
+    refused(&faster, &["roadmap.json", "built for another mesh, hopper, gravity or surface", "build it again"]);
+    desk.write("chain.csv", "x_m,z_m\n0,0\n10,0\n");
+    for option in ["--roadmap", "--roadmap-output"] {
+        let on_chain =
+            ["plan", "chain.csv", "--set", "body.name=moon", "--set", "hopper.takeoff_speed_max_m_s=3", option, "x.json"];
+        desk.refused(&on_chain, &[option, "for free routes over a mesh", "leave the option out"]);
+    }
+    assert!(!desk.path().join("x.json").exists());
+}

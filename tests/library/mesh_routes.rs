@@ -55,7 +55,7 @@ fn planned(scene: &Scene, (friction, speed_m_s, contacts): (f64, f64, usize)) ->
         scene.file, scene.start, scene.goal, scene.bounds
     );
     let scenario = Scenario::new(Entries::from_toml(&text)).unwrap();
-    let question = MeshRouteQuestion { scenario: &scenario, base: Path::new("../shared/mesh"), front: None };
+    let question = MeshRouteQuestion { scenario: &scenario, base: Path::new("../shared/mesh"), front: None, roadmap: None };
     mesh_route(&question, &()).unwrap()
 }
 

@@ -139,7 +139,34 @@ pub(crate) struct PlanArgs {
     #[command(flatten)]
     pub(crate) size: SizeArgs,
     #[command(flatten)]
+    pub(crate) roadmap: RoadmapArgs,
+    #[command(flatten)]
     pub(crate) common: CommonArgs,
+}
+
+/// The roadmap of a free route over a mesh
+#[derive(Debug, ClapArgs)]
+pub(crate) struct RoadmapArgs {
+    /// Roadmap (JSON) of an earlier plan over the same mesh: its contacts are searched, with start and goal, and no others are drawn
+    /// [default: contacts are drawn]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) roadmap: Option<PathBuf>,
+    /// Roadmap of a plan over a mesh (JSON) to write, for later plans with --roadmap [default: none]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) roadmap_output: Option<PathBuf>,
+}
+
+impl RoadmapArgs {
+    /// Refuses both where the terrain is no mesh.
+    pub(crate) fn refuse(&self) -> Result<(), Failure> {
+        let given = [("--roadmap", &self.roadmap), ("--roadmap-output", &self.roadmap_output)];
+        match given.into_iter().find(|(_, file)| file.is_some()) {
+            Some((option, _)) => Err(Failure::message(format!(
+                "{option}: found this option, which is for free routes over a mesh, and this terrain is none: leave the option out"
+            ))),
+            None => Ok(()),
+        }
+    }
 }
 
 /// Fly the planned path many times under the errors of [uncertainty]: success rate, scatter of the landings, outcomes

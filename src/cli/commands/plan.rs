@@ -28,8 +28,9 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     if let Some(input) = load_mesh_plan(&args.journey, &args.common, &args.search, Purpose::Plan, &[])? {
         return plan_over_mesh::run(args, &input);
     }
-    let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Plan, &[])?;
-    let loaded = loaded.within_memory(args.size.memory_max_bytes())?;
+    args.roadmap.refuse()?;
+    let loaded =
+        load_journey(&args.journey, &args.common, &args.search, Purpose::Plan, &[])?.within_memory(args.size.memory_max_bytes())?;
     loaded.ends()?;
     if args.size.dry_run {
         let size = route_size(&loaded.case)?;

@@ -2,14 +2,14 @@
 
 use chta::{
     report::{DocumentKind, MapKnowledge, mesh_plan_text, write_path_csv},
-    study::{MeshRouteQuestion, mesh_route},
+    study::{MeshRouteError, MeshRouteQuestion, mesh_route},
 };
 
 use crate::cli::{
     Answer, Failure,
     args::PlanArgs,
     load::MeshPlanInput,
-    output::{self, TableFormat},
+    output::{self, Pending, TableFormat},
     progress::Progress,
     views::{Files, Table, Views},
 };
@@ -30,8 +30,14 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
     }
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let mut table = Table::begin(args.output.as_deref(), TableFormat::Csv)?;
-    let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: args.front()? };
-    let routed = mesh_route(&question, &Progress::new(args.common.quiet)).map_err(|error| Failure::about(&input.mesh, &error))?;
+    let roadmap_output = args.roadmap.roadmap_output.as_deref().map(Pending::begin).transpose()?;
+    let read = args.roadmap.roadmap.as_deref();
+    let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: args.front()?, roadmap: read };
+    let about = |error: MeshRouteError| {
+        let roadmap = read.filter(|_| matches!(error, MeshRouteError::NoRoadmap(_) | MeshRouteError::Roadmap(_)));
+        Failure::about(roadmap.unwrap_or(&input.mesh), &error)
+    };
+    let routed = mesh_route(&question, &Progress::new(args.common.quiet)).map_err(about)?;
     output::warn_all(args.common.quiet, &routed.warnings);
     let views = Views {
         text: &|| mesh_plan_text(&routed.answer),
@@ -41,6 +47,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
     let mut files = Files::default();
     files.picture(plot, || Some(routed.picture(&input.scenario)))?;
     files.table(&mut table, &views)?;
+    files.roadmap(roadmap_output, &routed)?;
     files.finish()?;
     views.show(args.answer.format, table.to_stdout)?;
     Ok(Answer::of(routed.answer.is_traversable()))

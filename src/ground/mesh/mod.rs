@@ -37,7 +37,7 @@ use nalgebra::Vector2;
 
 use crate::{
     ballistics::{
-        FlightEnvelope, LineOfSight,
+        FlightEnvelope, LineOfSight, PathBounds,
         limits::{blocked_lofts, blocked_lofts_of_ball},
     },
     chain::{ConstraintProblem, FacetGround, facet_constraints},
@@ -54,6 +54,8 @@ pub struct MeshGround {
     tree: Arc<MeshTree>,
     envelope: FlightEnvelope,
     surface: SurfaceProperties,
+    /// What the greatest speeds allow.
+    speed_bounds: PathBounds,
     /// Added to every coefficient of friction in the flights of a trial.
     friction_error: f64,
     /// How far contacts stand off the surface, m.
@@ -98,7 +100,10 @@ impl MeshGround {
         let tree: Arc<MeshTree> = tree.into();
         let faces = surfaces(tree.mesh().faces(), surface, &FaceGroups::new(), &Derating::NONE);
         let envelope = FlightEnvelope::new(hopper, gravity);
-        Ok(Self { tree, envelope, surface: *surface, friction_error: 0.0, stand_off_m: 0.0, faces, groups: Arc::default() })
+        let limits = hopper.limits();
+        let speed_bounds = PathBounds::new(limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s(), gravity.m_s2());
+        let (surface, groups) = (*surface, Arc::default());
+        Ok(Self { tree, envelope, surface, speed_bounds, friction_error: 0.0, stand_off_m: 0.0, faces, groups })
     }
 
     /// The mesh.
@@ -114,6 +119,11 @@ impl MeshGround {
     /// The surface.
     pub const fn surface(&self) -> &SurfaceProperties {
         &self.surface
+    }
+
+    /// Lower bounds on paths from the greatest speeds alone.
+    pub const fn speed_bounds(&self) -> PathBounds {
+        self.speed_bounds
     }
 
     /// The course from one contact to another; `None` where one is right over the other: a vertical hop has no plane.
@@ -148,9 +158,15 @@ impl MeshGround {
         landing: &MeshContact,
         buffers: &'a mut MeshBuffers,
     ) -> Option<(LineOfSight, &'a [SlopeInterval])> {
-        let course = self.course(takeoff, landing)?;
         let MeshBuffers { blocked, free } = buffers;
         free.clear();
+        // Most pairs of a roadmap end here.
+        let away = landing.point_m() - takeoff.point_m();
+        if !self.speed_bounds.span(away.norm(), away.z) {
+            let run_m = away.xy().norm();
+            return (run_m > self.tree.resolution_m()).then(|| (LineOfSight::new(run_m, away.z), &[][..]));
+        }
+        let course = self.course(takeoff, landing)?;
         let heading = course.plane.heading;
         let from = self.limits(takeoff, heading, Contact::Takeoff);
         let Some((from, to)) = from.and_then(|from| Some((from, self.limits(landing, heading, Contact::Landing)?))) else {

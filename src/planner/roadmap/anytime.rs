@@ -32,11 +32,13 @@ pub enum RoadmapEnd {
     Gain,
     /// No more contacts were found that could be of use.
     Exhausted,
+    /// It was read: only start and goal were added.
+    Given,
 }
 
 impl RoadmapEnd {
     /// All reasons.
-    pub const ALL: [Self; 4] = [Self::Contacts, Self::Time, Self::Gain, Self::Exhausted];
+    pub const ALL: [Self; 5] = [Self::Contacts, Self::Time, Self::Gain, Self::Exhausted, Self::Given];
 
     /// The name in results.
     pub const fn name(self) -> &'static str {
@@ -45,6 +47,7 @@ impl RoadmapEnd {
             Self::Time => "time",
             Self::Gain => "gain",
             Self::Exhausted => "exhausted",
+            Self::Given => "given",
         }
     }
 }
@@ -104,14 +107,9 @@ pub fn grow_roadmap(
 ) -> Result<GrownRoadmap, Cancelled> {
     let began = limits.time_max.map(|most| (Instant::now(), most));
     let points = [ends[0].point_m(), ends[1].point_m()];
-    let is_there = (points[1] - points[0]).norm() <= ground.tree().resolution_m();
-    let numbers = if is_there { (0, 0) } else { (0, 1) };
-    let mut roadmap = Roadmap::new();
-    roadmap.extend(ground, ends.into(), progress)?;
-    let route = roadmap.route(ground, numbers, question)?;
-    let mut grown =
-        GrownRoadmap { roadmap, ends: numbers, route, history: Vec::new(), end: RoadmapEnd::Exhausted, drawn: sampler.drawn() };
-    grown.record();
+    let mut grown = over_roadmap(ground, Roadmap::new(), ends, question, progress)?;
+    let numbers = grown.ends;
+    let is_there = numbers.0 == numbers.1;
     let gains = Gains { least: least_amounts(ground), points };
     let (mut weak_rounds, mut rounds) = (0, 0_u32);
     grown.end = loop {
@@ -156,6 +154,37 @@ pub fn grow_roadmap(
         }
     };
     grown.drawn = sampler.drawn();
+    Ok(grown)
+}
+
+/// The best path between two contacts over a roadmap that is known: both join it, and no other contact does.
+///
+/// # Errors
+/// [`Cancelled`].
+///
+/// # Complexity
+/// Every hop between the two and a contact of the roadmap is tested, and none between two of its own.
+pub fn over_roadmap(
+    ground: &MeshGround,
+    mut roadmap: Roadmap,
+    ends: [MeshContact; 2],
+    question: &RoadmapQuestion<'_>,
+    progress: &dyn Progress,
+) -> Result<GrownRoadmap, Cancelled> {
+    let apart_m = (ends[1].point_m() - ends[0].point_m()).norm();
+    let first = roadmap.contact_count();
+    let numbers = if apart_m <= ground.tree().resolution_m() { (first, first) } else { (first, first + 1) };
+    roadmap.extend(ground, ends.into(), progress)?;
+    let route = roadmap.route(ground, numbers, question)?;
+    let mut grown = GrownRoadmap {
+        roadmap,
+        ends: numbers,
+        route,
+        history: Vec::new(),
+        end: RoadmapEnd::Given,
+        drawn: DrawnContacts::default(),
+    };
+    grown.record();
     Ok(grown)
 }
 

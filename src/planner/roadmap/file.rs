@@ -23,16 +23,18 @@ const SCHEMA: &str = "chta/roadmap/1";
 #[non_exhaustive]
 pub enum RoadmapFileError {
     /// Not JSON, a key too few or too many, or not readable.
-    #[error("this is no roadmap: {0}")]
+    #[error("this is no roadmap ({0}), expected the JSON file of a plan over this mesh")]
     Json(#[from] serde_json::Error),
     /// Another kind or version of file.
-    #[error("the schema is \"{found}\", expected \"{SCHEMA}\"")]
+    #[error("found a file of schema \"{found}\", expected a roadmap, \"{SCHEMA}\"")]
     Schema {
         /// What was found.
         found: String,
     },
     /// It was built for another mesh, hopper, gravity or surface, or by another version.
-    #[error("the roadmap was built for another mesh, hopper, gravity or surface, or by another version: build it again")]
+    #[error(
+        "this roadmap was built for another mesh, hopper, gravity or surface, or by another version, expected one of this scenario: build it again"
+    )]
     OtherGround,
     /// A contact that is not on the mesh.
     #[error("contact {number} does not lie on its facets of the mesh")]

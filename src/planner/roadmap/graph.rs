@@ -1,6 +1,5 @@
 //! The contacts and the windows between them, as a graph.
 
-use nalgebra::Point3;
 use petgraph::{
     Direction as Towards,
     graph::{DiGraph, EdgeIndex, NodeIndex},
@@ -9,7 +8,7 @@ use petgraph::{
 use rayon::prelude::*;
 
 use crate::{
-    ballistics::{LineOfSight, PathBounds},
+    ballistics::LineOfSight,
     ground::{MeshBuffers, MeshContact, MeshGround},
     progress::{Cancelled, Detail, Meter, Progress, Stage},
     quantity::SlopeInterval,
@@ -111,33 +110,27 @@ impl Roadmap {
     /// # Complexity
     /// A square root for every pair; the windows of those that the greatest speeds may span.
     pub fn extend(&mut self, ground: &MeshGround, contacts: Vec<MeshContact>, progress: &dyn Progress) -> Result<(), Cancelled> {
-        let meter = Meter::new(progress, Stage::Search);
+        let meter = Meter::new(progress, Stage::Search).after(self.pairs_tested);
         meter.report(Detail::None)?;
         let known = self.contact_count();
-        let mut points: Vec<Point3<f64>> = self.graph.node_weights().map(MeshContact::point_m).collect();
-        points.extend(contacts.iter().map(MeshContact::point_m));
+        let all = known + contacts.len();
         let of = |node: usize| if node < known { self.contact(node) } else { &contacts[node - known] };
-        let bounds = speed_bounds(ground);
         let row = |buffers: &mut MeshBuffers, from: usize| {
             let mut counter = meter.counter();
             let mut found = Vec::new();
-            let landings = if from < known { known..points.len() } else { 0..points.len() };
+            let landings = if from < known { known..all } else { 0..all };
             for to in landings.filter(|to| *to != from) {
                 counter.pair()?;
-                let away = points[to] - points[from];
-                if !bounds.span(away.norm(), away.z) {
-                    continue;
-                }
                 if let Some((_, windows)) = ground.windows(of(from), of(to), buffers) {
                     found.extend(windows.iter().map(|lofts| (to, *lofts)));
                 }
             }
             Ok(found)
         };
-        let rows = (0..points.len()).into_par_iter().map_init(MeshBuffers::default, row);
+        let rows = (0..all).into_par_iter().map_init(MeshBuffers::default, row);
         let rows: Vec<Vec<(usize, SlopeInterval)>> = rows.collect::<Result<_, Cancelled>>()?;
         meter.check()?;
-        let (all, old) = (points.len() as u64, known as u64);
+        let (all, old) = (all as u64, known as u64);
         self.pairs_tested += all * all.saturating_sub(1) - old * old.saturating_sub(1);
         for contact in contacts {
             self.graph.add_node(contact);
@@ -197,11 +190,4 @@ impl Roadmap {
             Some((from.index(), to.index(), self.graph[edge]))
         })
     }
-}
-
-/// Bounds from the greatest speeds of a hopper over a ground.
-pub(super) fn speed_bounds(ground: &MeshGround) -> PathBounds {
-    let envelope = ground.envelope();
-    let limits = envelope.hopper().limits();
-    PathBounds::new(limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s(), envelope.gravity_m_s2())
 }

@@ -18,7 +18,7 @@ mod legs;
 mod route;
 mod sample;
 
-pub use anytime::{GAIN_MIN, GrownRoadmap, RoadmapEnd, RoadmapLimits, RoadmapRound, grow_roadmap};
+pub use anytime::{GAIN_MIN, GrownRoadmap, RoadmapEnd, RoadmapLimits, RoadmapRound, grow_roadmap, over_roadmap};
 pub use file::RoadmapFileError;
 pub use graph::{Roadmap, RoadmapHop};
 pub use legs::RoadmapLegs;

@@ -2,7 +2,7 @@
 
 use nalgebra::Point3;
 
-use super::{Roadmap, RoadmapLegs, graph::speed_bounds};
+use super::{Roadmap, RoadmapLegs};
 use crate::{
     ballistics::{Arc, TakeoffChoice},
     graph::RefusalCounts,
@@ -11,7 +11,7 @@ use crate::{
         Amount, Amounts, Budgets, FoundPath, LabelCap, Objective, SearchedCommands, UnmetBudget, front,
         search::{search, without_budgets},
     },
-    progress::Cancelled,
+    progress::{Cancelled, Meter, Progress, Stage},
     world::Limit,
 };
 
@@ -97,14 +97,27 @@ impl Roadmap {
     }
 
     /// What lies between the contacts that a start reaches and those that lead to a goal.
-    pub fn gap(&self, ground: &MeshGround, (start, goal): (usize, usize)) -> RoadmapGap {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    ///
+    /// # Complexity
+    /// A square root for every pair of a reached contact and one that leads to the goal, and the hops of at most
+    /// [`JUDGED_MAX`](RoadmapGap::JUDGED_MAX) pairs.
+    pub fn gap(
+        &self,
+        ground: &MeshGround,
+        (start, goal): (usize, usize),
+        progress: &dyn Progress,
+    ) -> Result<RoadmapGap, Cancelled> {
+        let meter = Meter::new(progress, Stage::Search).after(self.pairs_tested());
         let (reached, leading) = (numbers(&self.hops_out_of(start)), numbers(&self.hops_to(goal)));
         let point = |node: usize| self.contact(node).point_m();
         let nearest = |of: &[usize], to: usize| {
             let away = |node: &usize| (point(*node) - point(to)).norm_squared();
             of.iter().copied().min_by(|a, b| away(a).total_cmp(&away(b)))
         };
-        let bounds = speed_bounds(ground);
+        let bounds = ground.speed_bounds();
         let spanned = |from: usize| {
             leading.iter().copied().filter(move |to| {
                 let away = point(*to) - point(from);
@@ -112,7 +125,8 @@ impl Roadmap {
             })
         };
         let (mut pairs, mut least_m2) = (0_u64, f64::INFINITY);
-        for &from in &reached {
+        for (number, &from) in reached.iter().enumerate() {
+            meter.check_piece(number)?;
             for to in spanned(from) {
                 pairs += 1;
                 least_m2 = least_m2.min((point(to) - point(from)).norm_squared());
@@ -130,11 +144,12 @@ impl Roadmap {
             refusals: RefusalCounts::default(),
             vertical: 0,
         };
-        let mut number = 0;
-        for &from in &reached {
+        let mut pair = 0;
+        for (number, &from) in reached.iter().enumerate() {
+            meter.check_piece(number)?;
             for to in spanned(from) {
-                number += 1;
-                if !u64::is_multiple_of(number - 1, every) {
+                pair += 1;
+                if !u64::is_multiple_of(pair - 1, every) {
                     continue;
                 }
                 gap.judged += 1;
@@ -148,7 +163,7 @@ impl Roadmap {
                 }
             }
         }
-        gap
+        Ok(gap)
     }
 }
 

@@ -127,7 +127,7 @@ fn the_best_path_is_that_of_all_pairs_tested_one_by_one() {
                 assert!((sum - total).abs() <= 1e-9 * total, "the arcs take {sum}, the totals say {total}");
             } else {
                 lost += 1;
-                let gap = roadmap.gap(&ground, (0, 1));
+                let gap = roadmap.gap(&ground, (0, 1), &()).unwrap();
                 assert!(gap.reached + gap.leading <= contacts.len() && gap.judged <= gap.pairs);
                 assert_eq!(gap.refusals.total() + gap.vertical, gap.judged, "every hop across the gap is refused");
             }
@@ -245,7 +245,7 @@ fn a_slot_that_sampled_angles_miss_is_passed() {
     assert!((1.21..=1.48).contains(&height_m), "{height_m} m in the slot");
 }
 
-/// Cancels at the first report, or at the second.
+/// Cancels after so many reports.
 struct After(std::sync::atomic::AtomicU64);
 
 impl Progress for After {
@@ -267,6 +267,7 @@ fn a_cancelled_roadmap_is_as_it_was() {
         assert!(cancelled.is_err(), "after {reports} reports");
         assert_eq!((roadmap.contact_count(), roadmap.window_count(), roadmap.pairs_tested()), before);
     }
+    assert!(roadmap.gap(&ground, (0, 1), &After(0.into())).is_err());
 }
 
 #[test]

@@ -32,7 +32,7 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
     let tally = args.tally.as_deref().map(Pending::begin).transpose()?;
     let about = |error: &dyn std::error::Error| Failure::message(format!("{}: {error}", input.mesh.display()));
     let progress = Progress::new(args.common.quiet);
-    let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: None };
+    let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: None, roadmap: None };
     let routed = mesh_route(&question, &progress).map_err(|error| Failure::about(&input.mesh, &error))?;
     let simulated =
         simulate_over_mesh(routed, &input.scenario, &args.options(), &mut (), &progress).map_err(|error| about(&error))?;
