@@ -127,6 +127,11 @@ impl Corridor {
         self.nodes.positions.len()
     }
 
+    /// The places of the most reliable path from the start to the goal within the hop budget, both included.
+    pub fn path(&self) -> Vec<MapPosition> {
+        self.successors.path(self.nodes.start).into_iter().map(|node| self.nodes.positions[node]).collect()
+    }
+
     /// The ground under the limits that planning may use.
     pub(crate) fn ground(&self) -> &DemGround {
         &self.nodes.ground

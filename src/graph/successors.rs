@@ -110,6 +110,21 @@ impl Successors {
         self.fewest(node).map_or(f64::INFINITY, |own| self.of_all.at(node, hops.min(own + self.extra)))
     }
 
+    /// The nodes of the most reliable path from a node to the goal within the hop budget, both included; empty if the goal cannot be reached.
+    pub(super) fn path(&self, from: usize) -> Vec<usize> {
+        let (all, mut path) = (self.of_all.as_ref(), Vec::new());
+        let Some(own) = self.fewest(from) else { return path };
+        let (mut node, mut allowed) = (from, own + self.extra);
+        path.push(node);
+        while self.fewest(node) != Some(0) {
+            let onward = all.edges[node].iter().map(|edge| (all.onward(edge, allowed), edge));
+            let Some((_, edge)) = onward.min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+            (node, allowed) = (edge.target, allowed.saturating_sub(edge.hops));
+            path.push(node);
+        }
+        path
+    }
+
     fn rank(&self, node: usize) -> Vec<NodeId> {
         let all = self.of_all.as_ref();
         let Some(own) = self.fewest(node) else { return Vec::new() };

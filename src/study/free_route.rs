@@ -15,7 +15,7 @@ use super::{
 use crate::{
     ballistics::{PathBounds, TakeoffChoice},
     chain::Station,
-    graph::{self, Edge, Leg, NodeSet, Outcome, PointSpacing, RefusalCounts, ReliabilityUse, SearchError},
+    graph::{self, Edge, Leg, NodeSet, Outcome, PointSpacing, RefusalCounts, SearchError},
     ground::{ContactPoint, DemGround, MapPosition, Surface},
     hop::HopTest,
     path::{Execution, Hop, HopPath, execute},
@@ -151,7 +151,10 @@ impl FreeSearch {
     }
 
     /// The best route by the objective, within the budgets.
-    fn route(&self, progress: &dyn Progress) -> Result<FreeRoute, JourneyError> {
+    ///
+    /// # Errors
+    /// [`JourneyError`].
+    pub(super) fn route(&self, progress: &dyn Progress) -> Result<FreeRoute, JourneyError> {
         let scenario = &self.case.scenario;
         let by_risk = self.objective.amounts().contains(&Amount::Risk);
         let whole = dem_ground(&self.case).map_err(Box::new)?;
@@ -168,10 +171,15 @@ impl FreeSearch {
 
     /// A path on its unrolled chain, with the commands that the search chose.
     pub(super) fn laid(&self, path: &RoutePath, commands: SearchedCommands) -> Result<Laid, JourneyError> {
-        let case = unrolled(&self.case, &path.places)?;
-        let test = case.hop_test();
         let choices = (commands == SearchedCommands::Distinct).then_some(path.choices.as_slice());
-        let legs = legs(&test, &path.places, choices)?;
+        self.laid_over(&path.places, choices)
+    }
+
+    /// The same over places, with the commands of these choices, or of the one of all hops.
+    pub(super) fn laid_over(&self, places: &[MapPosition], choices: Option<&[TakeoffChoice]>) -> Result<Laid, JourneyError> {
+        let case = unrolled(&self.case, places)?;
+        let test = case.hop_test();
+        let legs = legs(&test, places, choices)?;
         Ok(Laid { case, test, legs })
     }
 
@@ -217,6 +225,41 @@ impl FreeSearch {
         }
         warnings
     }
+
+    /// What was found, with a path of the route on its unrolled chain, which is flown again there and over the DEM.
+    ///
+    /// # Errors
+    /// [`JourneyError`].
+    pub(super) fn found(&self, route: &FreeRoute, laid: Option<Laid>) -> Result<FoundRoute, JourneyError> {
+        let case = &self.case;
+        let mut warnings = self.warnings(route);
+        let answer = |outcome| graph::Answer {
+            outcome,
+            spacing: PointSpacing::AtMostM(self.nodes.lattice().spacing_m()),
+            points_per_segment: 0,
+            nodes: self.nodes.count(),
+            pairs_tested: route.work.pairs_tested,
+            refusals: RefusalCounts::default(),
+        };
+        let lower = lower_bound(&self.ground, [self.goal.start, self.goal.goal]);
+        let checked = |test: &HopTest, ends: &(Station, Station), found: &graph::Answer| {
+            let check = CheckAnswer::new(test, ends.0.point.x_m, ends.1.point.x_m, found, self.goal.effort);
+            let check = check.with_objective(self.objective_record(route)).with_derating(DeratingRecord::of(&case.scenario.derating));
+            CheckAnswer { hops_lower_bound: lower, route: Some(record(&self.nodes, route, &case.scenario)), ..check }
+        };
+        let Some(laid) = laid else {
+            // No station of a chain stands for where a route in any direction ends; the record has the places.
+            let (test, found, ends) = (case.hop_test(), answer(Outcome::EndpointsRefuse(Vec::new())), self.ends);
+            let check = checked(&test, &ends, &found);
+            return Ok(FoundRoute { test, ends, found, check, path: None, warnings, case: case.clone() });
+        };
+        let (laid, cost) = commanded(laid)?;
+        let Unrolled { case: unrolled, test, legs, ends, path } = self.flown(laid)?;
+        warnings.extend(path.iter().flat_map(|path| case.scenario.path_warnings(path)));
+        let found = answer(Outcome::Path { legs, cost });
+        let check = checked(&test, &ends, &found).with_path(path.as_ref());
+        Ok(FoundRoute { test, ends, found, check, path, warnings, case: unrolled })
+    }
 }
 
 /// A route on its unrolled chain.
@@ -235,59 +278,9 @@ pub(super) struct Unrolled {
     pub(super) path: Option<HopPath>,
 }
 
-/// Searches for the route from the start of a case to its goal, and flies it again over its unrolled chain and over the DEM.
-///
-/// # Errors
-/// [`JourneyError`].
-pub(super) fn found_route(case: &Case, progress: &dyn Progress) -> Result<FoundRoute, JourneyError> {
-    let search = FreeSearch::of(case)?;
-    let route = search.route(progress)?;
-    let case = &search.case;
-    let mut warnings = search.warnings(&route);
-    let answer = |outcome| graph::Answer {
-        outcome,
-        spacing: PointSpacing::AtMostM(search.nodes.lattice().spacing_m()),
-        points_per_segment: 0,
-        nodes: search.nodes.count(),
-        pairs_tested: route.work.pairs_tested,
-        refusals: RefusalCounts::default(),
-    };
-    let lower = lower_bound(&search.ground, [search.goal.start, search.goal.goal]);
-    let checked = |test: &HopTest, ends: &(Station, Station), found: &graph::Answer| {
-        let check = CheckAnswer::new(test, ends.0.point.x_m, ends.1.point.x_m, found, search.goal.effort);
-        let check =
-            check.with_objective(search.objective_record(&route)).with_derating(DeratingRecord::of(&case.scenario.derating));
-        CheckAnswer { hops_lower_bound: lower, route: Some(record(&search.nodes, &route, &case.scenario)), ..check }
-    };
-    let Some(found_path) = &route.path else {
-        // No station of a chain stands for where a route in any direction ends; the record has the places.
-        let (test, found, ends) = (case.hop_test(), answer(Outcome::EndpointsRefuse(Vec::new())), search.ends);
-        let check = checked(&test, &ends, &found);
-        return Ok(FoundRoute { test, ends, found, check, path: None, warnings, case: search.case });
-    };
-    let Laid { case: unrolled, test, legs } = search.laid(found_path, case.scenario.commands)?;
-    let (legs, cost) = commanded(&unrolled, &test, (legs, found_path.cost))?;
-    let Unrolled { case: unrolled, test, legs, ends, path } = search.flown(Laid { case: unrolled, test, legs })?;
-    warnings.extend(path.iter().flat_map(|path| case.scenario.path_warnings(path)));
-    let found = answer(Outcome::Path { legs, cost });
-    let check = checked(&test, &ends, &found).with_path(path.as_ref());
-    Ok(FoundRoute { test, ends, found, check, path, warnings, case: unrolled })
-}
-
 /// What a free route leaves out of a scenario.
 pub(super) fn left_out(scenario: &Scenario) -> Vec<String> {
     let mut warnings = Vec::new();
-    if scenario.uncertainty.is_some() && scenario.risk != ReliabilityUse::Ignored && !scenario.plans_by_objective() {
-        let commands = if scenario.search.takeoff == TakeoffChoice::MostReliable {
-            "choose the command of each of its hops, and "
-        } else {
-            ""
-        };
-        warnings.push(format!(
-            "a free route is searched by hops and effort: the errors of [uncertainty] {commands}count where a robot replans, but do not \
-             choose the places that the route hops to"
-        ));
-    }
     if !scenario.hopper.limits().steps.is_continuous() {
         warnings.push(
             "a free route and its trials have exact commands, and this machine takes its commands in steps, which may miss a landing or \

@@ -16,7 +16,7 @@ use crate::{
         self, Beside, Corridor, CostToGo, NodeSet, Outcome, ReliabilityOptions, ReliabilityUse, ReliablePath, RiskModel,
         TakeoffScatter, most_reliable_paths, path_within_budget, preferred_path,
     },
-    ground::{DemGround, Surface},
+    ground::{DemGround, MapPosition, Surface},
     hop::HopTest,
     path::{HopPath, PathError, generate},
     planner::{Amount, Amounts, ChainPath, ChainQuestion, LabelCap, Objective, SearchedCommands, front_on_chain},
@@ -296,19 +296,43 @@ impl FlownJourney<'_> {
         progress: &dyn Progress,
     ) -> Result<Option<ToGo>, SimulateError> {
         let slot = &replanning.beside[beside as usize];
-        let corridor = match (slot.get(), self.ground, self.replanned_reliability()) {
-            (Some(known), ..) => known.as_ref(),
-            (None, Some(ground), Some(reliability)) => {
-                let over =
-                    if self.whole.is_some() { Cow::Owned(planned_over(ground, self.scenario)) } else { Cow::Borrowed(ground) };
-                let (nodes, options) = (self.nodes(found)?, &self.scenario.search);
-                let corridor = Corridor::new(self.test, &nodes, options, (&reliability, &over, beside), progress)?;
-                slot.get_or_init(|| corridor).as_ref()
+        let corridor = match slot.get() {
+            Some(known) => known,
+            None => {
+                let corridor = self.corridor(found, beside, progress)?;
+                slot.get_or_init(|| corridor)
             }
-            _ => None,
         };
+        let corridor = corridor.as_ref();
         Ok(corridor
             .map(|corridor| ToGo::Corridor(Arc::new(hops.map_or_else(|| corridor.clone(), |hops| corridor.with_hops(hops))))))
+    }
+
+    /// The places beside the line of an answer; `None` where the robot stays on the line.
+    fn corridor(
+        &self,
+        found: &graph::Answer,
+        beside: Beside,
+        progress: &dyn Progress,
+    ) -> Result<Option<Corridor>, SimulateError> {
+        let Some((ground, reliability)) = self.ground.zip(self.replanned_reliability()) else { return Ok(None) };
+        let over = if self.whole.is_some() { Cow::Owned(planned_over(ground, self.scenario)) } else { Cow::Borrowed(ground) };
+        let (nodes, options) = (self.nodes(found)?, &self.scenario.search);
+        Ok(Corridor::new(self.test, &nodes, options, (&reliability, &over, beside), progress)?)
+    }
+
+    /// The most reliable paths over the nodes of an answer and places beside its line, by a closed form of the risk of each hop: one for each
+    /// kind of places, as the places that it visits.
+    pub(super) fn reliable_ways(
+        &self,
+        found: &graph::Answer,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Vec<MapPosition>>, SimulateError> {
+        let mut ways = Vec::new();
+        for beside in Beside::ALL {
+            ways.extend(self.corridor(found, beside, progress)?.map(|corridor| corridor.path()));
+        }
+        Ok(ways)
     }
 
     /// The share of fixed trials of one path that reach the goal, and what they replan by; open loop without `replanning`.

@@ -171,7 +171,7 @@ pub(crate) fn contact(ground: &MeshGround, draw: &mut Draw) -> Option<MeshContac
 }
 
 /// Every arc inside a window flies free, and every arc that other limits allow outside of them hits a facet: over so many random scenes.
-fn compare_with_flown_arcs(seed: u64, scenes: usize) {
+fn compare_with_flown_arcs(seed: u64, scenes: u32) {
     let draw = &mut Draw::seeded(seed);
     let (mut free, mut hits, mut several, mut doubtful) = (0, 0, 0, 0);
     for _ in 0..scenes {
