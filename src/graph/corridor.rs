@@ -362,6 +362,28 @@ mod tests {
         Corridor::new(&HopTest::new(chain), &nodes, &options, (&reliability, ground, beside), &()).unwrap()
     }
 
+    /// A path takes what is stated of its start, hop by hop, in no more hops than are allowed.
+    #[test]
+    fn a_path_adds_up_to_the_weight_of_its_start() {
+        let draw = &mut Draw::seeded(2102);
+        let (mut paths, mut longer) = (0, 0);
+        for round in 0..12 {
+            let (ground, beside, extra) = (rough_ground(draw), Beside::ALL[round % 2], [0, 1, 4, 60][round / 2 % 4]);
+            let Some(found) = corridor(&ground, beside, extra) else { continue };
+            let (nodes, path) = (found.nodes.as_ref(), found.path());
+            assert_eq!(path.first().zip(path.last()), Some((&nodes.positions[nodes.start], &nodes.positions[nodes.goal])));
+            let number = |place: &MapPosition| nodes.positions.iter().position(|node| node == place).unwrap();
+            let taken: f64 = path.windows(2).map(|pair| nodes.onward(&pair[0], number(&pair[1]), 0.0).unwrap().total).sum();
+            let stated = found.successors.weight(NodeId(nodes.start));
+            assert!((taken - stated).abs() < 1e-9 * stated, "{taken}, stated {stated}");
+            let (hops, fewest) = (path.len() as u64 - 1, found.successors.fewest(nodes.start).unwrap());
+            assert!((fewest..=fewest + u64::from(extra)).contains(&hops), "{hops} hops, fewest {fewest}, {extra} more");
+            paths += 1;
+            longer += u32::from(hops > fewest);
+        }
+        assert!(paths > 6 && longer > 1, "{paths} paths, {longer} longer than the fewest");
+    }
+
     /// Fewest hops and least weights by rounds over all pairs until nothing changes.
     #[test]
     fn hops_and_weights_equal_those_of_all_pairs() {

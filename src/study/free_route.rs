@@ -244,7 +244,8 @@ impl FreeSearch {
         let lower = lower_bound(&self.ground, [self.goal.start, self.goal.goal]);
         let checked = |test: &HopTest, ends: &(Station, Station), found: &graph::Answer| {
             let check = CheckAnswer::new(test, ends.0.point.x_m, ends.1.point.x_m, found, self.goal.effort);
-            let check = check.with_objective(self.objective_record(route)).with_derating(DeratingRecord::of(&case.scenario.derating));
+            let check =
+                check.with_objective(self.objective_record(route)).with_derating(DeratingRecord::of(&case.scenario.derating));
             CheckAnswer { hops_lower_bound: lower, route: Some(record(&self.nodes, route, &case.scenario)), ..check }
         };
         let Some(laid) = laid else {

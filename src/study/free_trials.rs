@@ -112,7 +112,8 @@ fn with_journey<T>(
 ) -> Result<T, JourneyError> {
     let ground = dem_ground(&route.case).map_err(Box::new)?;
     let scenario = &route.case.scenario;
-    let journey = FlownJourney { scenario, test: &route.test, whole: route.case.whole_test(), ends: route.ends, ground: ground.as_ref() };
+    let journey =
+        FlownJourney { scenario, test: &route.test, whole: route.case.whole_test(), ends: route.ends, ground: ground.as_ref() };
     Ok(ask(&journey).map_err(Box::new)?)
 }
 

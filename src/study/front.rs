@@ -309,12 +309,7 @@ impl FlownJourney<'_> {
     }
 
     /// The places beside the line of an answer; `None` where the robot stays on the line.
-    fn corridor(
-        &self,
-        found: &graph::Answer,
-        beside: Beside,
-        progress: &dyn Progress,
-    ) -> Result<Option<Corridor>, SimulateError> {
+    fn corridor(&self, found: &graph::Answer, beside: Beside, progress: &dyn Progress) -> Result<Option<Corridor>, SimulateError> {
         let Some((ground, reliability)) = self.ground.zip(self.replanned_reliability()) else { return Ok(None) };
         let over = if self.whole.is_some() { Cow::Owned(planned_over(ground, self.scenario)) } else { Cow::Borrowed(ground) };
         let (nodes, options) = (self.nodes(found)?, &self.scenario.search);

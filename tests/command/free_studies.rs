@@ -162,9 +162,6 @@ fn each_hop_has_its_most_reliable_command() {
     // A least speed over level ground stands on the edge of the take-off cone: half of the draws fail.
     assert!(least.iter().all(|success| *success < 0.6) && reliable.iter().all(|success| *success > 0.7), "{least:?} {reliable:?}");
     assert!(surely > on_the_edge + 0.3, "{on_the_edge} and {surely}");
-    // Whose commands they are is said, as is that errors do not choose the places.
-    let ran = desk.run(&["plan", "free.toml"]);
-    assert!(ran.status == 0 && ran.stderr.contains("choose the command of each of its hops"), "{ran:?}");
 }
 
 /// Parts of a campaign give the answer of the whole.
@@ -326,4 +323,29 @@ fn free_routes_over_real_terrain_are_flown_and_their_least_speed_is_found() {
         let written = fs::read_to_string(desk.path().join("path.csv")).expect("path.csv");
         assert_eq!(Some(written.lines().count() as u64 - 1), planned["hops"].as_u64());
     }
+}
+
+/// Over rough ground the route is the one that most trials arrive by: never fewer than by the most reliable one of the fewest hops.
+#[test]
+fn a_route_is_chosen_for_its_reliability() {
+    let desk = Desk::new();
+    let bump = |row: usize, col: usize| f64::from(u32::try_from((7 * row * row + 13 * col + row * col) % 11).unwrap_or(0)) / 11.0;
+    ground(&desk, "rough.asc", |row, col| 0.9 * bump(row, col));
+    let errors = "[uncertainty]\ntakeoff_speed_sigma_fraction = 0.03\ntakeoff_angle_sigma_deg = 1.5\ngoal_tolerance_m = 0.8\n";
+    let (mut better, mut longer) = (0, 0);
+    for ends in [[[103.0, 203.0], [125.0, 214.0]], [[104.0, 215.0], [124.0, 204.0]]] {
+        let rough = scenario("rough.asc", ends, errors).replace("friction_coefficient = 5.0", "friction_coefficient = 1.2");
+        desk.write("rough.toml", rough);
+        let planned = |risk: &str| {
+            let risk = format!("search.risk={risk}");
+            let answer =
+                desk.json(&["plan", "rough.toml", "--set", &risk, "--set", "search.takeoff_angle=most-reliable", "--quiet"]);
+            (answer["hops"].as_u64().expect("hops"), number(&answer["totals"]["success_estimated"]), answer["verified"].clone())
+        };
+        let ((hops, surely, verified), (fewest, success, _)) = (planned("traded"), planned("fewest-hops"));
+        assert!(surely >= success && hops >= fewest && verified == true, "{hops} hops, {surely}; {fewest} hops, {success}");
+        better += u32::from(surely > success + 0.05);
+        longer += u32::from(hops > fewest);
+    }
+    assert!(better > 0 && longer > 0, "{better} better, {longer} longer");
 }
