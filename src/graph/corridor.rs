@@ -367,7 +367,7 @@ mod tests {
     fn a_path_adds_up_to_the_weight_of_its_start() {
         let draw = &mut Draw::seeded(2102);
         let (mut paths, mut longer) = (0, 0);
-        for round in 0..12 {
+        for round in 0..24 {
             let (ground, beside, extra) = (rough_ground(draw), Beside::ALL[round % 2], [0, 1, 4, 60][round / 2 % 4]);
             let Some(found) = corridor(&ground, beside, extra) else { continue };
             let (nodes, path) = (found.nodes.as_ref(), found.path());

@@ -292,7 +292,7 @@ pub fn search_on_chain(
         }
         // No path keeps the budgets: what the best one takes, and the least of what it takes too much of.
         let without = without_budgets(&legs, legs.ends(), question.objective, question.budgets, question.cap)?;
-        let Some(WithoutBudgets { path, within, unmet, capped: left_out }) = without else { break };
+        let Some(WithoutBudgets { path, within, unmet, capped: left_out, .. }) = without else { break };
         let path = legs.on_chain(&path);
         answer.outcome = Outcome::Path { legs: path.legs, cost: path.cost };
         return Ok(ChainSearched { answer, totals: Some(path.totals), within, unmet, capped: capped || left_out });

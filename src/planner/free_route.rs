@@ -317,6 +317,7 @@ impl<'a> Asked<'a> {
             if let Some(found) = found {
                 within = found.within;
                 capped |= found.capped;
+                (work.reached, work.settled) = found.work;
                 best = Some((self.path(&legs, &found.path), found.path, found.unmet));
             }
         }

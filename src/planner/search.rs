@@ -348,6 +348,8 @@ pub(super) struct WithoutBudgets {
     pub(super) unmet: Vec<UnmetBudget>,
     /// Whether labels were left out: it may then not be the best.
     pub(super) capped: bool,
+    /// How many nodes the search for it reached, and how many labels it settled.
+    pub(super) work: (usize, usize),
 }
 
 /// Where no path keeps the budgets: the best without them, and for each budget that it exceeds the least of any path. Where labels of every
@@ -359,7 +361,7 @@ pub(super) fn without_budgets(
     budgets: &Budgets,
     cap: LabelCap,
 ) -> Result<Option<WithoutBudgets>, Cancelled> {
-    let SearchResult { mut path, capped, .. } = search(graph, ends, objective, &Budgets::NONE, cap)?;
+    let SearchResult { mut path, capped, reached, settled, .. } = search(graph, ends, objective, &Budgets::NONE, cap)?;
     if path.is_none() && capped {
         path = search(graph, ends, &Objective::of(Amount::Hops), &Budgets::NONE, LabelCap::NONE)?.path;
     }
@@ -369,5 +371,5 @@ pub(super) fn without_budgets(
         let least = least_total(graph, ends, over.amount, cap)?.unwrap_or(over.total);
         unmet.push(UnmetBudget { over, least });
     }
-    Ok(Some(WithoutBudgets { path, within: unmet.is_empty(), unmet, capped }))
+    Ok(Some(WithoutBudgets { path, within: unmet.is_empty(), unmet, capped, work: (reached, settled) }))
 }

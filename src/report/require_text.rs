@@ -150,9 +150,11 @@ fn success_lines(sheet: &mut Sheet, success: &RequireSuccessRecord, answer: &Req
                 with_unit(value),
                 plural(hops)
             ));
-            let to = success.uncertain_to.map_or_else(|| "the end of the range".to_owned(), with_unit);
-            let from = success.uncertain_from.map_or_else(|| "the end of the range".to_owned(), with_unit);
-            sheet.line(format_args!("the 95 % interval of the estimate contains {least} between {from} and {to}"));
+            let end = |value: Option<f64>| value.map_or_else(|| "the end of the range".to_owned(), with_unit);
+            if success.uncertain_from != success.uncertain_to {
+                let [from, to] = [success.uncertain_from, success.uncertain_to].map(end);
+                sheet.line(format_args!("the 95 % interval of the estimate contains {least} between {from} and {to}"));
+            }
         }
         (None, Some(best)) => sheet.line(format_args!(
             "estimated success of at least {least} at no value tried from {from} to {to}; the best is {:.4} at {}",

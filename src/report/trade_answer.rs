@@ -195,8 +195,10 @@ impl TradeAnswer {
         }
         let without_path =
             |closed| self.rows.iter().any(|row| row.hops.is_none() && row.error.is_none() && row.is_closed() == closed);
+        let exceeds = self.rows.iter().any(|row| row.by_objective.as_ref().is_some_and(|record| !record.is_met()));
+        let what = if exceeds { "no path within the budgets" } else { "no path" };
         if without_path(false) {
-            text.push_str("\n-: no path found\n");
+            let _ = writeln!(text, "\n-: {what} found");
         }
         let unmet = self.rows.iter().filter_map(|row| row.success_budget.filter(|budget| !budget.met));
         if let Some((least, most)) = unmet.map(|budget| (budget.estimated_success_min, budget.success_estimated)).reduce(better) {
@@ -208,7 +210,7 @@ impl TradeAnswer {
             text.push_str("\nx: proved, there is no path\n");
         }
         if let Some(route) = &self.route {
-            let _ = writeln!(text, "\n{}; -: not reached over these nodes, which is no proof", route.sentence());
+            let _ = writeln!(text, "\n{}; -: {what} found over these nodes, which is no proof", route.sentence());
         }
         // Of many cells with the same reason, the first.
         let mut reasons: Vec<&str> = Vec::new();

@@ -135,19 +135,20 @@ pub(super) fn on_mesh(
     warnings: &mut Vec<String>,
 ) -> Result<MeshContact, MeshHopError> {
     let contact = ground.contact(at).map_err(|problem| MeshHopError::NoContact { end, problem })?;
-    let size_m = ground.tree().mesh().bounds().size_m();
-    if contact.moved_m() > FAR * size_m {
+    let (size_m, hop_m) = (ground.tree().mesh().bounds().size_m(), ground.level_hop_m());
+    if contact.moved_m() > FAR * size_m.min(hop_m) {
         warnings.push(format!(
-            "the {end} was moved {} m to the surface of a mesh that measures {} m: the answer is for the place on the mesh; check the point, its \
-             unit and terrain.mesh_scale",
+            "the {end} was moved {} m to the surface of a mesh that measures {} m and over which one level hop spans {} m: the answer is for the \
+             place on the mesh; check the point, its unit and terrain.mesh_scale",
             format_number(contact.moved_m()),
-            format_number(size_m)
+            format_number(size_m),
+            format_number(hop_m)
         ));
     }
     Ok(contact)
 }
 
-/// A point farther from the surface than this share of the size of the mesh was hardly meant to be moved there.
+/// A point farther from the surface than this share of the size of the mesh, or of a level hop, was hardly meant to be moved there.
 const FAR: f64 = 0.5;
 
 #[cfg(feature = "plot")]

@@ -151,10 +151,10 @@ pub(crate) struct JourneyArgs {
     /// Chain (CSV), scenario (TOML) or result (JSON); -: standard input
     #[arg(value_name = "CHAIN")]
     pub(crate) chain: PathBuf,
-    /// Start, m: X along the chain, X,Y on the map of a scenario's dem or mesh [default: the scenario's]
+    /// Start, m: X along the chain, X,Y on the map, X,Y,Z of a free route over a mesh [default: the scenario's]
     #[arg(long, value_name = "X[,Y]", value_parser = position, allow_hyphen_values = true)]
     pub(crate) start: Option<Position>,
-    /// Goal, m: X along the chain, X,Y on the map of a scenario's dem or mesh [default: the scenario's]
+    /// Goal, m: X along the chain, X,Y on the map, X,Y,Z of a free route over a mesh [default: the scenario's]
     #[arg(long, value_name = "X[,Y]", value_parser = position, allow_hyphen_values = true)]
     pub(crate) goal: Option<Position>,
 }

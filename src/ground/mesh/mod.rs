@@ -121,6 +121,13 @@ impl MeshGround {
         &self.surface
     }
 
+    /// The length of the longest hop over level ground by the greatest speeds, m.
+    pub fn level_hop_m(&self) -> f64 {
+        let limits = self.envelope.hopper().limits();
+        let speed_m_s = limits.takeoff_speed_max_m_s.min(limits.arc_landing_speed_max_m_s());
+        speed_m_s * speed_m_s / self.envelope.gravity_m_s2()
+    }
+
     /// Lower bounds on paths from the greatest speeds alone.
     pub const fn speed_bounds(&self) -> PathBounds {
         self.speed_bounds

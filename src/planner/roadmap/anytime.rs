@@ -28,7 +28,7 @@ pub enum RoadmapEnd {
     Contacts,
     /// Another round would take too long.
     Time,
-    /// The best path gained less than [`GAIN_MIN`] in the last two rounds about it.
+    /// The best path is within the budgets and gained less than [`GAIN_MIN`] in the last two rounds about it.
     Gain,
     /// No more contacts were found that could be of use.
     Exhausted,
@@ -149,7 +149,8 @@ pub fn grow_roadmap(
         grown.route = route;
         grown.record();
         weak_rounds = if refines && gain < GAIN_MIN { weak_rounds + 1 } else { 0 };
-        if weak_rounds == 2 {
+        // A path that exceeds a budget is no end: other contacts may have one within it.
+        if weak_rounds == 2 && grown.route.within {
             break RoadmapEnd::Gain;
         }
     };

@@ -162,11 +162,28 @@ fn every_window_of_every_pair_is_an_edge() {
 }
 
 fn grown(ground: &MeshGround, contacts_max: usize, seed: u64) -> GrownRoadmap {
+    grown_within(ground, &Budgets::NONE, contacts_max, seed)
+}
+
+fn grown_within(ground: &MeshGround, budgets: &Budgets, contacts_max: usize, seed: u64) -> GrownRoadmap {
     let objective = Objective::new(vec![Amount::Hops, Amount::ArcLength]).unwrap();
     let ends = [[0.2, 0.3, 0.0], [7.7, 7.6, 0.0]].map(|at| ground.contact(Point3::from(at)).unwrap());
     let mut sampler = ContactSampler::new(ground, None, 0.0, seed).unwrap();
     let limits = RoadmapLimits { contacts_max, time_max: None };
-    grow_roadmap(ground, ends, &mut sampler, &question(&objective, &Budgets::NONE), limits, &()).unwrap()
+    grow_roadmap(ground, ends, &mut sampler, &question(&objective, budgets), limits, &()).unwrap()
+}
+
+/// While the best path exceeds a budget, gaining little about it is no reason to stop.
+#[test]
+fn a_roadmap_grows_on_while_a_budget_is_not_kept() {
+    let ground = ground(boxes(&mut Draw::seeded(1804), 7), 4.0, 0.9, 5.0);
+    let free = grown(&ground, 2000, 1);
+    assert_eq!(free.end, RoadmapEnd::Gain, "{:?}", free.history);
+    let taken = free.route.path.unwrap().totals.of(Amount::ArcLength);
+    let kept = grown_within(&ground, &Budgets::NONE.with(Amount::ArcLength, taken).unwrap(), 2000, 1);
+    let unmet = grown_within(&ground, &Budgets::NONE.with(Amount::ArcLength, 0.1 * taken).unwrap(), 2000, 1);
+    assert!(kept.route.within && !unmet.route.within);
+    assert_eq!((unmet.end, unmet.roadmap.contact_count()), (RoadmapEnd::Contacts, 2000));
 }
 
 #[test]
