@@ -39,13 +39,15 @@ pub enum DocumentKind {
     Fan,
     /// Hops to all posts of a map: [`MapAnswer`](super::MapAnswer).
     Map,
+    /// Hops to contacts all over a mesh: [`MeshMapAnswer`](super::MeshMapAnswer).
+    MapMesh,
     /// What an answer takes before it is computed: [`SizeAnswer`](super::SizeAnswer).
     Size,
 }
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -61,6 +63,7 @@ impl DocumentKind {
         Self::Compare,
         Self::Fan,
         Self::Map,
+        Self::MapMesh,
         Self::Size,
     ];
 
@@ -82,6 +85,7 @@ impl DocumentKind {
             Self::Compare => "compare",
             Self::Fan => "fan",
             Self::Map => "map",
+            Self::MapMesh => "map-mesh",
             Self::Size => "size",
         }
     }

@@ -15,6 +15,7 @@ mod limit_counts;
 mod limit_pair;
 mod map_answer;
 mod mesh_hop_answer;
+mod mesh_map_answer;
 mod mesh_plan_answer;
 mod mesh_simulate_answer;
 mod objective_record;
@@ -60,6 +61,10 @@ pub use map_answer::{
 pub use mesh_hop_answer::{
     MeshBallRecord, MeshBindingRecord, MeshBlockedRecord, MeshContactRecord, MeshFacetRecord, MeshHopAnswer, MeshLimitRecord,
     MeshWindowEndRecord, MeshWindowRecord, mesh_hop_text,
+};
+pub use mesh_map_answer::{
+    MapContactRow, MapContactsRecord, MapRoundRecord, MeshGoalRecord, MeshMapAnswer, MeshReturnRecord, ReachedRecord,
+    mesh_map_text, write_map_contacts_csv,
 };
 pub(crate) use mesh_plan_answer::hops_of;
 pub use mesh_plan_answer::{MeshPlanAnswer, RoadmapGapRecord, RoadmapRecord, RoadmapRoundRecord, mesh_plan_text};

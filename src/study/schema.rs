@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 use crate::{
     report::{
         CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshHopAnswer,
-        MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
+        MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer,
+        TradeAnswer,
     },
     scenario::scenario_schema,
 };
@@ -61,6 +62,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Compare => derived::<CompareAnswer>(),
         DocumentKind::Fan => derived::<FanAnswer>(),
         DocumentKind::Map => derived::<MapAnswer>(),
+        DocumentKind::MapMesh => derived::<MeshMapAnswer>(),
         DocumentKind::Size => derived::<SizeAnswer>(),
     };
     close(&mut schema, false);

@@ -1,4 +1,4 @@
-//! One file per command, and one for a plan over a mesh.
+//! One file per command, and one for a question over a mesh.
 
 pub(super) mod bodies;
 pub(super) mod check;
@@ -8,6 +8,7 @@ pub(super) mod fan;
 pub(super) mod hop;
 pub(super) mod man;
 pub(super) mod map;
+mod map_over_mesh;
 pub(super) mod plan;
 mod plan_over_mesh;
 pub(super) mod require;

@@ -1,6 +1,6 @@
 //! The mesh of a free route, and the scenario for it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use chta::{
     report::DocumentKind,
@@ -47,12 +47,23 @@ pub(crate) fn load_mesh_plan(
     purpose: Purpose,
     own: &[OwnKey<'_>],
 ) -> Result<Option<MeshPlanInput>, Failure> {
-    let input = inputs::open(chain, Role::Chain)?;
+    load_mesh_scenario((chain, Role::Chain), common, (Some(search), EndOptions::of_path(*start, *goal)), purpose, own)
+}
+
+/// Loads the scenario of hops over a mesh as it stands, with the options beside it; `None` for any other input.
+pub(crate) fn load_mesh_scenario(
+    (target, role): (&Path, Role),
+    common: &CommonArgs,
+    (search, ends): (Option<&SearchArgs>, EndOptions),
+    purpose: Purpose,
+    own: &[OwnKey<'_>],
+) -> Result<Option<MeshPlanInput>, Failure> {
+    let input = inputs::open(target, role)?;
     if !input.is_scenario() || common.scenario.is_some() {
         return Ok(None);
     }
     let mut source = read_source(&input)?;
-    apply_options(&mut source.entries, common, Some(search), EndOptions::of_path(*start, *goal));
+    apply_options(&mut source.entries, common, search, ends);
     if source.entries.is_unreadable() || !source.entries.ask_for_free_mesh() {
         return Ok(None);
     }

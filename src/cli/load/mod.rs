@@ -27,7 +27,7 @@ use serde::Serialize;
 pub(crate) use bare::{Bare, ScenarioEnds, load_bare, load_map};
 pub(crate) use ends::EndOptions;
 pub(crate) use mesh_hop::{MeshHopInput, load_mesh_hop};
-pub(crate) use mesh_plan::{MeshPlanInput, load_mesh_plan};
+pub(crate) use mesh_plan::{MeshPlanInput, load_mesh_plan, load_mesh_scenario};
 pub(crate) use names::relative_name;
 pub(crate) use result::plan_to_fly;
 pub(crate) use vary::load_to_vary;

@@ -200,7 +200,7 @@ impl Roadmap {
 }
 
 /// Bounds from the greatest speeds of a hopper over a ground.
-pub(super) fn speed_bounds(ground: &MeshGround) -> PathBounds {
+pub(crate) fn speed_bounds(ground: &MeshGround) -> PathBounds {
     let envelope = ground.envelope();
     let limits = envelope.hopper().limits();
     PathBounds::new(limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s(), envelope.gravity_m_s2())

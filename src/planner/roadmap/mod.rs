@@ -20,6 +20,7 @@ mod sample;
 
 pub use anytime::{GAIN_MIN, GrownRoadmap, RoadmapEnd, RoadmapLimits, RoadmapRound, grow_roadmap};
 pub use file::RoadmapFileError;
+pub(crate) use graph::speed_bounds;
 pub use graph::{Roadmap, RoadmapHop};
 pub use legs::RoadmapLegs;
 pub use route::{RoadmapGap, RoadmapPath, RoadmapQuestion, RoadmapRoute};
