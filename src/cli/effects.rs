@@ -164,7 +164,7 @@ impl Purpose {
             ("search", "node_spacing_max_m") => self != Self::Hop,
             // Of free routes over meshes.
             ("search", "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => {
-                matches!(self, Self::Plan | Self::Simulate | Self::MapMesh)
+                matches!(self, Self::Plan | Self::Run | Self::Simulate | Self::Compare | Self::MapMesh)
             }
             ("search", _) if self == Self::MapMesh => false,
             ("search", "effort" | "takeoff_angle" | "split") if by_objective => true,

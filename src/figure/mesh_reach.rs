@@ -126,8 +126,9 @@ impl MeshReachFigure<'_> {
             (Swatch::Symbol(self.goal_symbol()), goal.to_owned()),
         ];
         let counted = |count: usize| format!("{count} contact{}", if count == 1 { "" } else { "s" });
-        // The start is in the first band.
-        let of = |class: usize| self.contacts.iter().filter(|one| one.hops.is_some_and(|hops| classes.of(hops) == class)).count();
+        // The start has its symbol.
+        let is_in = |hops: u64, class: usize| hops > 0 && classes.of(hops) == class;
+        let of = |class: usize| self.contacts.iter().filter(|one| one.hops.is_some_and(|hops| is_in(hops, class))).count();
         for (class, (text, colour)) in classes.texts().iter().zip(colours).enumerate() {
             let count = of(class);
             if count > 0 {

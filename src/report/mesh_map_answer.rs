@@ -60,6 +60,8 @@ pub struct MapContactsRecord {
     pub by_area: usize,
     /// Of these, the middles of facets.
     pub on_facets: usize,
+    /// Contacts that hold no landing, whatever the hop: facets too steep to rest on, or kept out.
+    pub no_landing: usize,
     /// Points left out inside closed bodies, or for their stand-off.
     pub left_out_buried: usize,
     /// Points left out beyond `search.bounds_m`.
@@ -208,6 +210,10 @@ pub fn mesh_map_text(answer: &MeshMapAnswer) -> String {
         answer.contacts.area_with_contacts_m2,
         100.0 * answer.reached_area_share
     ));
+    if answer.contacts.no_landing > 0 {
+        let none = answer.contacts.no_landing;
+        sheet.line(format_args!("{none} of {count} contacts hold no landing: their facets are too steep to rest on, or kept out"));
+    }
     bound_lines(&mut sheet, answer);
     if let Some(derating) = &answer.derating {
         sheet.line(format_args!("{}", derating.sentence()));

@@ -14,6 +14,7 @@ pub mod landings;
 mod limit_counts;
 mod limit_pair;
 mod map_answer;
+mod mesh_check_answer;
 mod mesh_hop_answer;
 mod mesh_map_answer;
 mod mesh_plan_answer;
@@ -58,6 +59,7 @@ pub use map_answer::{
     GoalRecord, MapAnswer, MapBudgetRecord, MapEffortRecord, MapObjectiveRecord, MapSummary, MobilityRecord, ReturnRecord,
     StartRecord,
 };
+pub use mesh_check_answer::{MeshCheckAnswer, ViolationRecord, mesh_check_text};
 pub use mesh_hop_answer::{
     MeshBallRecord, MeshBindingRecord, MeshBlockedRecord, MeshContactRecord, MeshFacetRecord, MeshHopAnswer, MeshLimitRecord,
     MeshWindowEndRecord, MeshWindowRecord, mesh_hop_text,

@@ -20,6 +20,7 @@ use crate::{
         MeshReturnRecord, ReachedRecord, write_map_contacts_csv,
     },
     scenario::Scenario,
+    world::Contact,
 };
 
 /// What is asked.
@@ -193,6 +194,7 @@ fn contacts_record(spread: &Spread, areas: &ContactAreas, (facets, area_m2): (us
         count: spread.contacts.len(),
         by_area,
         on_facets,
+        no_landing: spread.contacts.iter().filter(|contact| contact.refuses(Contact::Landing)).count(),
         left_out_buried: buried,
         left_out_outside: outside,
         facets,

@@ -5,9 +5,9 @@ use serde_json::{Value, json};
 
 use crate::{
     report::{
-        CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshHopAnswer,
-        MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer,
-        TradeAnswer,
+        CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshCheckAnswer,
+        MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer,
+        SizeAnswer, TradeAnswer,
     },
     scenario::scenario_schema,
 };
@@ -53,7 +53,8 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Check => derived::<CheckAnswer>(),
         DocumentKind::CheckPairs => derived::<PairsAnswer>(),
         DocumentKind::Plan | DocumentKind::Run => derived::<PlanAnswer>(),
-        DocumentKind::PlanMesh => derived::<MeshPlanAnswer>(),
+        DocumentKind::CheckMesh => derived::<MeshCheckAnswer>(),
+        DocumentKind::PlanMesh | DocumentKind::RunMesh => derived::<MeshPlanAnswer>(),
         DocumentKind::Simulate => derived::<SimulateAnswer>(),
         DocumentKind::SimulateMesh => derived::<MeshSimulateAnswer>(),
         DocumentKind::SimulateExperiment => derived::<ExperimentAnswer>(),

@@ -6,8 +6,8 @@ use std::{collections::BTreeSet, path::Path, sync::OnceLock};
 
 use chta::report::{
     CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
-    MeshHopAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer,
-    TradeAnswer,
+    MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer,
+    SimulateAnswer, SizeAnswer, TradeAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
 use serde::{Serialize, de::DeserializeOwned};
@@ -130,7 +130,9 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::Check => of::<CheckAnswer>(text),
         DocumentKind::CheckPairs => of::<PairsAnswer>(text),
         DocumentKind::Plan | DocumentKind::Run => of::<PlanAnswer>(text),
-        DocumentKind::PlanMesh => of::<MeshPlanAnswer>(text),
+        DocumentKind::MapMesh => of::<MeshMapAnswer>(text),
+        DocumentKind::CheckMesh => of::<MeshCheckAnswer>(text),
+        DocumentKind::PlanMesh | DocumentKind::RunMesh => of::<MeshPlanAnswer>(text),
         DocumentKind::Simulate => of::<SimulateAnswer>(text),
         DocumentKind::SimulateMesh => of::<MeshSimulateAnswer>(text),
         DocumentKind::SimulateExperiment => of::<ExperimentAnswer>(text),

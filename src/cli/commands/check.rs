@@ -8,6 +8,7 @@ use chta::{
     study::{check, check_pairs},
 };
 
+use super::check_over_mesh;
 use crate::cli::{
     Answer, Failure,
     args::CheckArgs,
@@ -27,6 +28,9 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
     inputs::look_at_pairs(&args.journey.chain, &args.common, args.pairs.as_deref())?;
     // Set before the terrain is read, since reading starts the threads.
     threads::start(args.answer.threads)?;
+    if let Some(input) = check_over_mesh::loaded(args)? {
+        return check_over_mesh::run(args, &input);
+    }
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Check, &[])?;
     let pairs = args.pairs.as_deref().map(read_pairs).transpose()?;
     pairs.is_none().then(|| loaded.ends()).transpose()?;

@@ -2,6 +2,7 @@
 
 pub(super) mod bodies;
 pub(super) mod check;
+mod check_over_mesh;
 pub(super) mod compare;
 pub(super) mod completions;
 pub(super) mod fan;
@@ -13,6 +14,7 @@ pub(super) mod plan;
 mod plan_over_mesh;
 pub(super) mod require;
 pub(super) mod run;
+mod run_over_mesh;
 pub(super) mod schema;
 pub(super) mod simulate;
 pub(super) mod slice;

@@ -15,3 +15,6 @@ mod spread;
 
 pub use layers::{ContactHops, Way, contact_hops};
 pub use spread::{Spread, SpreadQuestion, SpreadRound, spread};
+
+#[cfg(test)]
+mod tests;
