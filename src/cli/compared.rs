@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use chta::{
-    figure::{FigureError, Picture},
+    figure::{FigureError, Picture, SeenFrom},
     report::{CompareAnswer, CompareRow},
     study::{CaseRecord, Compared, Comparison, MeshCompared, MeshComparison, MeshRouteQuestion, PlanOptions, mesh_route, plan},
 };
@@ -54,10 +54,10 @@ impl AnyComparison {
     }
 
     /// The picture with all paths overlaid.
-    pub(crate) fn picture(&self) -> Result<Picture, FigureError> {
+    pub(crate) fn picture(&self, seen_from: SeenFrom) -> Result<Picture, FigureError> {
         match self {
             Self::Chains(_, comparison) => comparison.picture(),
-            Self::Mesh(_, comparison) => comparison.picture(),
+            Self::Mesh(_, comparison) => comparison.picture(seen_from),
         }
     }
 }
@@ -69,6 +69,7 @@ pub(crate) fn compare_all(args: &CompareArgs) -> Result<AnyComparison, Failure> 
     // All are over a mesh, or none is.
     let over_mesh = args.scenarios.first().is_some_and(|file| is_over_mesh(file, &common(args)).unwrap_or(false));
     if !over_mesh {
+        args.view.without_mesh()?;
         let (loaded, cases) = each(args, compared)?;
         return Ok(AnyComparison::Chains(loaded, Comparison::of(cases)));
     }

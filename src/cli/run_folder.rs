@@ -7,6 +7,7 @@ use std::{
 
 use chta::{
     chain::csv::write_chain_csv,
+    figure::SeenFrom,
     report::{CrsRecord, DocumentKind, MapKnowledge, write_path_csv},
     study::{MeshRouted, MeshSimulated, Planned, Simulated},
 };
@@ -103,7 +104,7 @@ impl<'a> RunFolder<'a> {
             .map_err(|error| Failure::message(format!("path.csv: {error}")))?;
         let result = input.document(DocumentKind::RunMesh, &routed.warnings, &routed.answer)?;
         self.files.extend([("path.csv", path_csv), (RESULT, result.into_bytes())]);
-        self.files.push((PICTURE, output::encoded(routed.picture(&input.scenario), Path::new(PICTURE))?));
+        self.files.push((PICTURE, output::encoded(routed.picture(&input.scenario, SeenFrom::default()), Path::new(PICTURE))?));
         Ok(())
     }
 

@@ -29,11 +29,13 @@ pub(super) struct Oblique {
 }
 
 impl Oblique {
-    /// The view of a mesh below a height of the sheet, around some points; `size_m` is shown where they have no extent.
+    /// The view of a mesh below a height of the sheet, around some points; `size_m` is shown where they have no extent. `cut_z_m`: what lies
+    /// higher is left out.
     pub(super) fn around<'p>(
         mesh: &Mesh,
         seen_from: SeenFrom,
         (points, size_m): (impl Iterator<Item = &'p Point3<f64>>, f64),
+        cut_z_m: Option<f64>,
         top_mm: f64,
     ) -> Self {
         let view = View::from_deg(seen_from.azimuth_deg, seen_from.elevation_deg);
@@ -49,7 +51,7 @@ impl Oblique {
         let mm_per_m = (wide_mm / (high[0] - low[0])).min(TALL_MM / (high[1] - low[1]));
         let left_mm = MARGIN_MM + 0.5 * (wide_mm - (high[0] - low[0]) * mm_per_m);
         let window = Window { low, high, mm_per_m, corner_mm: (left_mm, top_mm) };
-        let seen = Seen::of(mesh, &view, window, None);
+        let seen = Seen::of(mesh, &view, window, cut_z_m);
         Self { seen_from, view, window, seen }
     }
 

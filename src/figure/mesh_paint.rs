@@ -10,7 +10,7 @@ const SIMILAR: f64 = 0.7;
 /// A place has the colour of a contact at most so many mean distances of contacts away.
 const REACH: f64 = 3.0;
 /// The period of the stripes of a striped colour, pixels, and their width.
-const STRIPES: (usize, usize) = (14, 3);
+const STRIPES: (usize, usize) = (26, 3);
 
 /// A contact with its class.
 #[derive(Clone, Copy, Debug)]

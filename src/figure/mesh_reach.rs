@@ -1,5 +1,7 @@
 //! The picture of what is reached over a mesh: an oblique view and a plan view in the colours of the hops.
 
+use std::fmt::Write as _;
+
 use nalgebra::{Point3, Vector3};
 use plotters::style::RGBColor;
 
@@ -12,6 +14,7 @@ use super::{
     mesh_paint::{Paint, PaintedContact},
     palette::WHITE,
     sheet::Sheet,
+    ticks::short,
 };
 use crate::{
     quantity::MapPoint,
@@ -20,6 +23,9 @@ use crate::{
 
 /// Contacts that are not reached: grey, which is not a colour of any band.
 const NOT_REACHED: RGBColor = RGBColor(196, 196, 196);
+
+/// What the colours mean.
+const COLOURS: &str = " Each place has the colour of the nearest contact, where that is near and its facet faces a similar way.";
 
 /// A contact of a picture of hops.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +86,13 @@ pub fn draw_mesh_reach(figure: &MeshReachFigure<'_>) -> Result<Picture, FigureEr
     let top_mm = keys::draw(&mut sheet, &figure.entries(&classes, &colours), head_mm + 2.0) + 7.0;
     let corners = [low, high].into_iter().flat_map(|a| [low, high].map(|b| Point3::new(a.x, b.y, a.z)));
     let shown: Vec<Point3<f64>> = figure.contacts.iter().map(|contact| contact.point).chain(corners).collect();
-    let mut oblique = Oblique::around(figure.mesh, figure.seen_from, (shown.iter(), (high - low).amax()), top_mm);
+    let seen = |cut_z_m| Oblique::around(figure.mesh, figure.seen_from, (shown.iter(), (high - low).amax()), cut_z_m, top_mm);
+    let cut_z_m = figure.cut_z_m(high - low);
+    let (mut oblique, mut text) = (seen(None), COLOURS.to_owned());
+    if figure.hides_most(&oblique) {
+        oblique = seen(Some(cut_z_m));
+        let _ = write!(text, " What lies higher than {} m hides most of what is reached, and is left out.", short(cut_z_m));
+    }
     oblique.seen.paint(figure.mesh, &oblique.view, &paint);
     let ends = [(figure.start, start_symbol as fn(&mut Sheet, _), "start"), (figure.goal.0, figure.goal_symbol(), "goal")];
     for (at, symbol, _) in &ends {
@@ -89,9 +101,8 @@ pub fn draw_mesh_reach(figure: &MeshReachFigure<'_>) -> Result<Picture, FigureEr
     for (at, _, name) in &ends {
         named(&mut sheet, oblique.place(at), name);
     }
-    let text = " Each place has the colour of the nearest contact, where that is near and its facet faces a similar way.";
-    let end_mm = oblique.finish(&mut sheet, text);
-    let end_mm = figure.plan(&mut sheet, (low, high), &paint, end_mm + 2.0);
+    let end_mm = oblique.finish(&mut sheet, &text);
+    let end_mm = figure.plan(&mut sheet, (low, high), (&paint, cut_z_m), end_mm + 2.0);
     Ok(Picture::page(sheet, end_mm + 2.5))
 }
 
@@ -153,18 +164,34 @@ impl MeshReachFigure<'_> {
         found
     }
 
-    /// The plan view; returns where it ends.
-    fn plan(&self, sheet: &mut Sheet, (low, high): (Vector3<f64>, Vector3<f64>), paint: &Paint, top_mm: f64) -> f64 {
+    /// What lies higher is left out, m: just over the highest contact that is reached.
+    fn cut_z_m(&self, size: Vector3<f64>) -> f64 {
         let reached = self.contacts.iter().filter(|contact| contact.hops.is_some()).map(|contact| contact.point.z);
         let highest_m = reached.chain([self.start.z]).fold(f64::NEG_INFINITY, f64::max);
-        // A level plate has no height, and a straight line of contacts no width.
-        let size_m = (high - low).amax();
-        let beside_m = 0.02 * if size_m > 0.0 { size_m } else { 1.0 };
+        self.cut_z_m.unwrap_or(highest_m + beside_m(size))
+    }
+
+    /// Whether most of the contacts that are reached are behind other facets.
+    fn hides_most(&self, oblique: &Oblique) -> bool {
+        let reached = || self.contacts.iter().filter(|contact| contact.hops.is_some());
+        let hidden = reached().filter(|contact| oblique.seen.hides(oblique.view.of(&contact.point))).count();
+        2 * hidden > reached().count()
+    }
+
+    /// The plan view; returns where it ends.
+    fn plan(
+        &self,
+        sheet: &mut Sheet,
+        (low, high): (Vector3<f64>, Vector3<f64>),
+        (paint, cut_z_m): (&Paint, f64),
+        top_mm: f64,
+    ) -> f64 {
+        let beside_m = beside_m(high - low);
         let corner = |at: Vector3<f64>, by_m: f64| MapPoint::new(at.x + by_m, at.y + by_m);
         let plan = MeshPlan {
             mesh: self.mesh,
             bounds: MapBounds { min: corner(low, -beside_m), max: corner(high, beside_m) },
-            cut_z_m: self.cut_z_m.unwrap_or(highest_m + beside_m),
+            cut_z_m,
             low_z_m: low.z,
             paths: Vec::new(),
             start: self.start.xy(),
@@ -174,4 +201,10 @@ impl MeshReachFigure<'_> {
         };
         draw_mesh_plan(sheet, &plan, top_mm)
     }
+}
+
+/// Room beside what is shown: a level plate has no height, and a straight line of contacts no width.
+fn beside_m(size: Vector3<f64>) -> f64 {
+    let size_m = size.amax();
+    0.02 * if size_m > 0.0 { size_m } else { 1.0 }
 }

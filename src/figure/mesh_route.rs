@@ -168,7 +168,7 @@ impl MeshRouteFigure<'_> {
         let corners = self.mesh.vertices().iter().filter(is_shown);
         let ends = [&self.start, &self.goal].into_iter().chain(&self.nearest);
         let points = corners.chain(flights.iter().flatten().flatten()).chain(ends);
-        let oblique = Oblique::around(self.mesh, self.seen_from, (points, (around.high - around.low).amax()), top_mm);
+        let oblique = Oblique::around(self.mesh, self.seen_from, (points, (around.high - around.low).amax()), None, top_mm);
         for (number, route) in flights.iter().enumerate().rev() {
             let pen = Self::pen(number);
             for hop in route {

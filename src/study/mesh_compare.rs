@@ -76,7 +76,7 @@ impl MeshComparison {
     /// # Errors
     /// [`FigureError`], also without any answer.
     #[cfg(feature = "plot")]
-    pub fn picture(&self) -> Result<Picture, FigureError> {
+    pub fn picture(&self, seen_from: SeenFrom) -> Result<Picture, FigureError> {
         let Some(first) = self.compared.first() else {
             return Err(FigureError::NoGround { what: "the comparison".to_owned(), points: 0 });
         };
@@ -101,7 +101,7 @@ impl MeshComparison {
         draw_mesh_route(&MeshRouteFigure {
             caption: Caption { title: names.join(" and "), lines },
             mesh: first.routed.ground.tree().mesh(),
-            seen_from: SeenFrom::default(),
+            seen_from,
             cut_z_m: None,
             start,
             goal,

@@ -23,7 +23,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Answer, Failure> {
     };
     let mut files = Files::default();
     files.table(&mut table, &views)?;
-    files.picture(plot, || Some(comparison.picture()))?;
+    files.picture(plot, || Some(comparison.picture(args.view.direction())))?;
     files.finish()?;
     views.show(args.answer.format, table.to_stdout)?;
     Ok(Answer::of(!args.require_all || comparison.answer().is_traversable()))

@@ -31,6 +31,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     if let Some(input) = load_mesh_scenario(target, common, (None, EndOptions::NONE), Purpose::MapMesh, &[])? {
         return map_over_mesh::run(args, &input);
     }
+    args.view.without_mesh()?;
     let input = MapInput::of(args)?;
     let question = input.question(args);
     let prepared = PreparedMap::new(&question).map_err(|error| input.failure(&error))?;

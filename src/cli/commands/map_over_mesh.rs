@@ -1,7 +1,6 @@
 //! `chta map` over a mesh.
 
 use chta::{
-    figure::SeenFrom,
     report::{DocumentKind, mesh_map_text},
     study::{MeshReachQuestion, mesh_reach},
 };
@@ -30,7 +29,7 @@ pub(super) fn run(args: &MapArgs, input: &MeshPlanInput) -> Result<Answer, Failu
         csv: &|out| reached.write_csv(out),
     };
     let mut files = Files::default();
-    files.picture(plot, || Some(reached.picture(&input.scenario, SeenFrom::default())))?;
+    files.picture(plot, || Some(reached.picture(&input.scenario, args.view.direction())))?;
     files.table(&mut table, &views)?;
     files.finish()?;
     views.show(args.answer.format, table.to_stdout)?;

@@ -28,6 +28,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     if let Some(input) = load_mesh_plan(&args.journey, &args.common, &args.search, Purpose::Plan, &[])? {
         return plan_over_mesh::run(args, &input);
     }
+    args.view.without_mesh()?;
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Plan, &[])?;
     let loaded = loaded.within_memory(args.size.memory_max_bytes())?;
     loaded.ends()?;

@@ -10,7 +10,7 @@ use super::{
         ticks::{Ticks, short},
     },
     data::GoalMark,
-    panel::MapPanel,
+    panel::{MapPanel, goal_symbol},
 };
 use crate::{
     quantity::MapPoint,
@@ -65,7 +65,14 @@ pub(in super::super) fn draw_mesh_plan(sheet: &mut Sheet, plan: &MeshPlan<'_>, t
         sheet.line(points, *pen);
     }
     let landings: Vec<Vec<MapPoint>> = plan.paths.iter().map(|(path, _)| path.clone()).collect();
-    let mut taken = map.ends(sheet, &[plan.start], &[GoalMark { at: plan.goal, hops: plan.goal_hops }], &landings);
+    let goals = [GoalMark { at: plan.goal, hops: plan.goal_hops }];
+    let several = landings.len() > 1;
+    let mut taken = map.ends(sheet, &[plan.start], if several { &[] } else { &goals }, &landings);
+    if several {
+        // Each path has hops of its own.
+        goal_symbol(sheet, map.place(plan.goal));
+        map.name(sheet, plan.goal, "goal", &mut taken);
+    }
     if let [path] = &landings[..] {
         let between = path.get(1..path.len().saturating_sub(1)).unwrap_or_default();
         let every = between.len().div_ceil(MOST_NUMBERED).max(1);
