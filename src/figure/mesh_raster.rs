@@ -41,6 +41,8 @@ const DARKEST: f64 = 0.62;
 const LIGHT: [f64; 3] = [-0.45, 0.7, 0.55];
 /// A step in depth of this share of the view is an outline.
 const STEP: f64 = 0.02;
+/// A height that many steps below a contour line is on it.
+const ON_LINE: f64 = 1e-6;
 /// The period of the dots of the veil, pixels.
 const PERIOD: usize = 5;
 
@@ -239,7 +241,8 @@ impl Seen {
 
     /// Contour lines at whole multiples of a step of how near the surface is: of its height, seen from above.
     pub(super) fn contours(&mut self, step_m: f64) {
-        let band = |near_m: f64| (near_m / step_m).floor();
+        // A level facet at such a height lies on one side of its line, whatever the last digits of its corners.
+        let band = |near_m: f64| (near_m / step_m + ON_LINE).floor();
         let mut lines = Vec::new();
         for row in 0..self.height.saturating_sub(1) {
             for column in 0..self.width.saturating_sub(1) {
