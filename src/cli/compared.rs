@@ -16,7 +16,7 @@ use super::{
     load::{
         EndOptions, Loaded, MeshPlanInput, comparison_document, is_over_mesh, load_mesh_scenario, load_scenario, relative_name,
     },
-    output,
+    not_on_mesh, output,
     progress::Progress,
     wrong_thing::Role,
 };
@@ -73,11 +73,7 @@ pub(crate) fn compare_all(args: &CompareArgs) -> Result<AnyComparison, Failure> 
         let (loaded, cases) = each(args, compared)?;
         return Ok(AnyComparison::Chains(loaded, Comparison::of(cases)));
     }
-    if args.prove.prove {
-        return Err(Failure::message(
-            "--prove: found this option, which bounds the hops along a profile, and this terrain is a mesh: leave the option out",
-        ));
-    }
+    not_on_mesh::refuse(&[("--prove", args.prove.prove, "bounds the hops along a profile")])?;
     let (inputs, cases) = each(args, compared_over_mesh)?;
     let comparison = MeshComparison::of(cases);
     match (comparison.other_mesh(), &args.plot) {

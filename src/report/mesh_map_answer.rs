@@ -237,15 +237,14 @@ pub fn mesh_map_text(answer: &MeshMapAnswer) -> String {
 
 /// What is not known of the contacts that were not reached.
 fn bound_lines(sheet: &mut Sheet, answer: &MeshMapAnswer) {
-    match (answer.hops_max, answer.not_searched_contacts) {
-        (Some(most), Some(left)) if left > 0 => sheet.line(format_args!(
-            "searched up to {}: {left} other contacts may be farther, or may not be reached at all, and were not searched",
-            hops_text(most)
-        )),
-        (Some(most), _) => {
-            sheet.line(format_args!("searched up to {}; no contact is farther over these contacts", hops_text(most)))
+    if let (Some(most), Some(left)) = (answer.hops_max.map(hops_text), answer.not_searched_contacts) {
+        if left > 0 {
+            sheet.line(format_args!(
+                "searched up to {most}: {left} other contacts may be farther, or may not be reached at all, and were not searched"
+            ));
+        } else {
+            sheet.line(format_args!("searched up to {most}; no contact is farther over these contacts"));
         }
-        _ => {}
     }
     if answer.reached_contacts < answer.contacts.count && answer.not_searched_contacts.is_none_or(|left| left == 0) {
         sheet.line(format_args!("not reached over these contacts is not unreachable: other contacts may lead on"));
@@ -290,13 +289,12 @@ fn contacts_lines(sheet: &mut Sheet, contacts: &MapContactsRecord) {
     let round = |round: &MapRoundRecord| format!("{}: {:.1} %", round.contacts, 100.0 * round.reached_share);
     let rounds: Vec<String> = contacts.history.iter().map(round).collect();
     sheet.line(format_args!("contacts and share reached: {}", rounds.join("; ")));
-    match contacts.ended_by {
-        RoadmapEnd::Time => {
-            sheet.line(format_args!("it stopped since another round would have taken too long (search.time_max_s)"))
-        }
-        RoadmapEnd::Exhausted => sheet.line(format_args!("it stopped since no more contacts were found")),
-        RoadmapEnd::Contacts | RoadmapEnd::Gain => {}
-    }
+    let why = match contacts.ended_by {
+        RoadmapEnd::Time => "it stopped since another round would have taken too long (search.time_max_s)",
+        RoadmapEnd::Exhausted => "it stopped since no more contacts were found",
+        RoadmapEnd::Contacts | RoadmapEnd::Gain => return,
+    };
+    sheet.line(format_args!("{why}"));
 }
 
 /// A count of hops.

@@ -1,11 +1,15 @@
 //! The options of the commands that answer for a whole DEM, or for all directions from a point of it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use chta::{figure::SeenFrom, planner::Amount, quantity::MapPoint, terrain::LonLat};
 use clap::Args as ClapArgs;
 
-use super::{super::Failure, AnswerArgs, CommonArgs, SearchArgs, lon_lat, map_point};
+use super::{AnswerArgs, CommonArgs, SearchArgs, lon_lat, map_point};
+use crate::cli::{
+    Failure,
+    output::{self, Pending},
+};
 
 /// Options of commands whose answers may be large.
 #[derive(Clone, Copy, Debug, ClapArgs)]
@@ -37,6 +41,12 @@ impl ViewArgs {
     /// The direction.
     pub(crate) fn direction(self) -> SeenFrom {
         self.seen_from.unwrap_or_default()
+    }
+
+    /// Opens the picture of other terrain than a mesh.
+    pub(crate) fn begin_picture(self, plot: Option<&Path>) -> Result<Option<Pending<'_>>, Failure> {
+        self.without_mesh()?;
+        output::begin_picture("--plot", plot)
     }
 
     /// Refuses the option for a picture of other terrain.

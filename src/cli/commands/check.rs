@@ -1,9 +1,6 @@
 //! `chta check`: does a path exist.
 
-use std::path::Path;
-
 use chta::{
-    chain::csv::{PairsFile, read_pairs_csv_file},
     report::{DocumentKind, check_text},
     study::{check, check_pairs},
 };
@@ -15,12 +12,11 @@ use crate::cli::{
     effects::Purpose,
     hints::further_means,
     inputs,
-    load::load_journey,
+    load::{load_journey, read_pairs},
     output,
     progress::Progress,
     threads, unanswered,
     views::{Files, show},
-    wrong_thing::Role,
 };
 
 /// Checks one pair or many.
@@ -53,11 +49,4 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
         _ => loaded.document(DocumentKind::CheckPairs, &warnings, checked.pairs_answer()),
     })?;
     Ok(Answer::of(checked.is_traversable()))
-}
-
-/// The pairs of a file; its warnings begin with its name.
-fn read_pairs(path: &Path) -> Result<PairsFile, Failure> {
-    let path = &inputs::open(path, Role::Pairs)?.file;
-    let PairsFile { pairs, warnings } = read_pairs_csv_file(path)?;
-    Ok(PairsFile { pairs, warnings: warnings.iter().map(|warning| format!("{}: {warning}", path.display())).collect() })
 }

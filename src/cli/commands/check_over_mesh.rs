@@ -13,7 +13,7 @@ use crate::cli::{
     effects::Purpose,
     inputs,
     load::{MeshPlanInput, load_mesh_plan},
-    output,
+    not_on_mesh, output,
     views::show,
     wrong_thing::Role,
 };
@@ -28,15 +28,11 @@ pub(super) fn loaded(args: &CheckArgs) -> Result<Option<MeshPlanInput>, Failure>
 
 /// Flies the path of a result again.
 pub(super) fn run(args: &CheckArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
-    let refused = [
+    not_on_mesh::refuse(&[
         ("--pairs", args.pairs.is_some(), "gives pairs of places along a chain"),
         ("--prove", args.prove.prove, "bounds the hops along a profile"),
         ("--plot", args.plot.is_some(), "draws stretches of a profile (chta plan draws the path over a mesh)"),
-    ];
-    if let Some((option, _, what)) = refused.into_iter().find(|(_, given, _)| *given) {
-        let message = format!("{option}: found this option, which {what}, and this terrain is a mesh: leave the option out");
-        return Err(Failure::message(message));
-    }
+    ])?;
     let file = inputs::open(&args.journey.chain, Role::Chain)?;
     let about = |error: &dyn std::error::Error| Failure::message(format!("{}: {error}", file.given.display()));
     let text = fs::read(&file.file).map_err(|error| about(&error))?;

@@ -6,16 +6,13 @@ use chta::{
 };
 
 use crate::cli::{
-    Answer, Failure, args::RunArgs, load::MeshPlanInput, output, progress::Progress, run_folder::RunFolder, views::show,
+    Answer, Failure, args::RunArgs, load::MeshPlanInput, not_on_mesh, output, progress::Progress, run_folder::RunFolder,
+    views::show,
 };
 
 /// Plans a free route over a mesh, flies its trials, and writes the results into a folder.
 pub(super) fn run(args: &RunArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
-    if args.trajectory.trajectory.is_some() {
-        return Err(Failure::message(
-            "--trajectory: found this option, which writes hops along a profile, and this terrain is a mesh: leave the option out",
-        ));
-    }
+    not_on_mesh::refuse(&[("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile")])?;
     output::check_folder(&args.output)?;
     let mut folder = RunFolder::new(&args.output, None)?;
     let about = |error: &dyn std::error::Error| Failure::message(format!("{}: {error}", input.mesh.display()));

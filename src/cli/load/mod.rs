@@ -5,6 +5,7 @@ mod ends;
 mod mesh_hop;
 mod mesh_plan;
 mod names;
+mod pairs;
 mod result;
 mod vary;
 
@@ -27,6 +28,7 @@ pub(crate) use ends::EndOptions;
 pub(crate) use mesh_hop::{MeshHopInput, load_mesh_hop};
 pub(crate) use mesh_plan::{MeshPlanInput, is_over_mesh, load_mesh_plan, load_mesh_scenario};
 pub(crate) use names::relative_name;
+pub(crate) use pairs::read_pairs;
 pub(crate) use result::plan_to_fly;
 pub(crate) use vary::load_to_vary;
 
