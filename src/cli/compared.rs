@@ -86,11 +86,14 @@ pub(crate) fn compare_all(args: &CompareArgs) -> Result<AnyComparison, Failure> 
     }
 }
 
+/// What was loaded for scenarios with an answer, and the answer or the row of every one.
+type Cases<L, C> = (Vec<L>, Vec<Result<C, CompareRow>>);
+
 /// Plans scenario after scenario: what was loaded for those with an answer, and a row for each of the others.
 fn each<L, C>(
     args: &CompareArgs,
     plan_one: impl Fn(&Path, &CompareArgs) -> Result<(L, C), Failure>,
-) -> Result<(Vec<L>, Vec<Result<C, CompareRow>>), Failure> {
+) -> Result<Cases<L, C>, Failure> {
     let (mut all, mut cases, mut first_failure) = (Vec::new(), Vec::new(), None);
     for file in &args.scenarios {
         match plan_one(file, args) {

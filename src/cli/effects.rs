@@ -279,6 +279,9 @@ impl Purpose {
     fn users(key: &Key, weighs: Weighs, called: Self) -> String {
         let mut users: Vec<&str> = Self::ALL.into_iter().filter(|purpose| purpose.uses(key, weighs)).map(Self::command).collect();
         users.dedup();
+        if called == Self::MapMesh {
+            users.iter_mut().filter(|user| **user == "map").for_each(|user| *user = "map over a DEM");
+        }
         let own = users.contains(&called.command());
         match (own, called) {
             (true, Self::Map { .. }) => ": it is used with --goal, --effort, --amount-output or --simulate".to_owned(),
