@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use chta::{
-    report::CompareRow,
-    study::{Compared, Comparison, PlanOptions, plan},
+    figure::{FigureError, Picture, SeenFrom},
+    report::{CompareAnswer, CompareRow},
+    study::{CaseRecord, Compared, Comparison, MeshCompared, MeshComparison, MeshRouteQuestion, PlanOptions, mesh_route, plan},
 };
 
 use super::{
@@ -12,18 +13,90 @@ use super::{
     args::{CommonArgs, CompareArgs},
     effects::Purpose,
     interrupt,
-    load::{Loaded, load_scenario, relative_name},
-    output,
+    load::{
+        EndOptions, Loaded, MeshPlanInput, comparison_document, is_over_mesh, load_mesh_scenario, load_scenario, relative_name,
+    },
+    not_on_mesh, output,
     progress::Progress,
+    wrong_thing::Role,
 };
 
-/// Loads and plans all scenarios, with a row for each and what was loaded for those with an answer.
+/// Scenarios side by side, with what was loaded for those with an answer.
+#[derive(Debug)]
+pub(crate) enum AnyComparison {
+    /// Along chains.
+    Chains(Vec<Loaded>, Comparison),
+    /// Over one mesh.
+    Mesh(Vec<MeshPlanInput>, MeshComparison),
+}
+
+impl AnyComparison {
+    /// The answer as plain data.
+    pub(crate) const fn answer(&self) -> &CompareAnswer {
+        match self {
+            Self::Chains(_, comparison) => &comparison.answer,
+            Self::Mesh(_, comparison) => &comparison.answer,
+        }
+    }
+
+    /// The answer as one document.
+    pub(crate) fn document(&self) -> Result<String, Failure> {
+        let (records, warnings): (Vec<&CaseRecord>, Vec<String>) = match self {
+            Self::Chains(loaded, comparison) => {
+                (loaded.iter().map(|one| &one.record).collect(), comparison.compared.iter().flat_map(Compared::warnings).collect())
+            }
+            Self::Mesh(inputs, comparison) => (
+                inputs.iter().map(MeshPlanInput::record).collect(),
+                comparison.compared.iter().flat_map(MeshCompared::warnings).collect(),
+            ),
+        };
+        comparison_document(&records, warnings, self.answer())
+    }
+
+    /// The picture with all paths overlaid.
+    pub(crate) fn picture(&self, seen_from: SeenFrom) -> Result<Picture, FigureError> {
+        match self {
+            Self::Chains(_, comparison) => comparison.picture(),
+            Self::Mesh(_, comparison) => comparison.picture(seen_from),
+        }
+    }
+}
+
+/// Loads and plans all scenarios, with a row for each.
 ///
 /// A scenario that fails has a row with its error. What is at fault in the options, or in every scenario, is a failure.
-pub(crate) fn compare_all(args: &CompareArgs) -> Result<(Vec<Loaded>, Comparison), Failure> {
+pub(crate) fn compare_all(args: &CompareArgs) -> Result<AnyComparison, Failure> {
+    // All are over a mesh, or none is.
+    let over_mesh = args.scenarios.first().is_some_and(|file| is_over_mesh(file, &common(args)).unwrap_or(false));
+    if !over_mesh {
+        args.view.without_mesh()?;
+        let (loaded, cases) = each(args, compared)?;
+        return Ok(AnyComparison::Chains(loaded, Comparison::of(cases)));
+    }
+    not_on_mesh::refuse(&[("--prove", args.prove.prove, "bounds the hops along a profile")])?;
+    let (inputs, cases) = each(args, compared_over_mesh)?;
+    let comparison = MeshComparison::of(cases);
+    match (comparison.other_mesh(), &args.plot) {
+        (Some(other), Some(_)) => Err(Failure::message(format!(
+            "--plot: found another mesh in {other} than in {}, expected scenarios over one mesh, whose paths are drawn over one another: leave the \
+             option out, or compare scenarios over one mesh",
+            args.scenarios[0].display()
+        ))),
+        _ => Ok(AnyComparison::Mesh(inputs, comparison)),
+    }
+}
+
+/// What was loaded for scenarios with an answer, and the answer or the row of every one.
+type Cases<L, C> = (Vec<L>, Vec<Result<C, CompareRow>>);
+
+/// Plans scenario after scenario: what was loaded for those with an answer, and a row for each of the others.
+fn each<L, C>(
+    args: &CompareArgs,
+    plan_one: impl Fn(&Path, &CompareArgs) -> Result<(L, C), Failure>,
+) -> Result<Cases<L, C>, Failure> {
     let (mut all, mut cases, mut first_failure) = (Vec::new(), Vec::new(), None);
     for file in &args.scenarios {
-        match compared(file, args) {
+        match plan_one(file, args) {
             Ok((loaded, one)) => {
                 all.push(loaded);
                 cases.push(Ok(one));
@@ -37,17 +110,39 @@ pub(crate) fn compare_all(args: &CompareArgs) -> Result<(Vec<Loaded>, Comparison
     }
     match first_failure {
         Some(failure) if all.is_empty() => Err(failure),
-        _ => Ok((all, Comparison::of(cases))),
+        _ => Ok((all, cases)),
     }
+}
+
+/// The options of the scenarios.
+fn common(args: &CompareArgs) -> CommonArgs {
+    CommonArgs::of_scenarios(&args.set, args.accept_map_scale, args.input_max_gib, args.quiet)
 }
 
 /// Loads and plans one scenario.
 fn compared(file: &Path, args: &CompareArgs) -> Result<(Loaded, Compared), Failure> {
-    let common = CommonArgs::of_scenarios(&args.set, args.accept_map_scale, args.input_max_gib, args.quiet);
-    let loaded = load_scenario(file, &common, Purpose::Compare)?;
+    let loaded = load_scenario(file, &common(args), Purpose::Compare)?;
     loaded.ends()?;
     let options = PlanOptions { proof: args.prove.proof(), ..PlanOptions::default() };
     let planned = plan(&loaded.case, options, &Progress::new(args.quiet))?;
     output::warn_all(args.quiet, &planned.warnings);
     Ok((loaded, Compared::of(planned, relative_name(file), &file.display().to_string())))
+}
+
+/// Loads and plans one scenario over a mesh.
+fn compared_over_mesh(file: &Path, args: &CompareArgs) -> Result<(MeshPlanInput, MeshCompared), Failure> {
+    let options = (None, EndOptions::NONE);
+    let input = load_mesh_scenario((file, Role::Scenario), &common(args), options, Purpose::Compare, &[])?;
+    let input = input.ok_or_else(|| {
+        Failure::message(format!(
+            "{}: found no free route over a mesh, expected one as in {}: compare scenarios over one mesh, or none over a mesh",
+            file.display(),
+            args.scenarios[0].display()
+        ))
+    })?;
+    let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: None, roadmap: None };
+    let routed = mesh_route(&question, &Progress::new(args.quiet)).map_err(|error| Failure::about(&input.mesh, &error))?;
+    output::warn_all(args.quiet, &routed.warnings);
+    let one = MeshCompared::of(routed, &input.scenario, relative_name(file), &file.display().to_string());
+    Ok((input, one))
 }

@@ -42,6 +42,8 @@ pub(crate) enum Purpose {
         /// Whether the scenario's own start and goal count.
         ends: ScenarioEnds,
     },
+    /// Hops over a mesh.
+    MapMesh,
 }
 
 /// What a scenario weighs in the choice of a path.
@@ -86,7 +88,7 @@ impl Weighs {
 
 impl Purpose {
     /// Every purpose, with all that it can compute.
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 11] = [
         Self::Hop,
         Self::Check,
         Self::Plan,
@@ -97,6 +99,7 @@ impl Purpose {
         Self::Compare,
         Self::Fan,
         Self::Map { goals: true, effort: true, amounts: true, trials: true, ends: ScenarioEnds::Ignored },
+        Self::MapMesh,
     ];
 
     /// The command's name.
@@ -111,7 +114,7 @@ impl Purpose {
             Self::Trade => "trade",
             Self::Compare => "compare",
             Self::Fan => "fan",
-            Self::Map { .. } => "map",
+            Self::Map { .. } | Self::MapMesh => "map",
         }
     }
 
@@ -161,8 +164,9 @@ impl Purpose {
             ("search", "node_spacing_max_m") => self != Self::Hop,
             // Of free routes over meshes.
             ("search", "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => {
-                matches!(self, Self::Plan | Self::Simulate)
+                matches!(self, Self::Plan | Self::Run | Self::Simulate | Self::Compare | Self::MapMesh)
             }
+            ("search", _) if self == Self::MapMesh => false,
             ("search", "effort" | "takeoff_angle" | "split") if by_objective => true,
             ("search", "effort") => !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { effort: false, .. }),
             ("search", "takeoff_angle" | "split" | "risk" | "risk_extra_hops_max") if by_success => true,
@@ -185,12 +189,12 @@ impl Purpose {
 
     /// Whether its paths are those of an objective within budgets, where the scenario has them.
     const fn plans_by_objective(self) -> bool {
-        !matches!(self, Self::Hop | Self::Fan)
+        !matches!(self, Self::Hop | Self::Fan | Self::MapMesh)
     }
 
     /// Whether its hops have commands in the machine's steps.
     pub(super) const fn flies_commands(self) -> bool {
-        !matches!(self, Self::Hop | Self::Require | Self::Trade | Self::Fan | Self::Map { .. })
+        !matches!(self, Self::Hop | Self::Require | Self::Trade | Self::Fan | Self::Map { .. } | Self::MapMesh)
     }
 
     /// Whether its answer is no where the path takes more propellant than the machine has.
@@ -273,7 +277,11 @@ impl Purpose {
 
     /// The commands that use a key, for the end of a warning.
     fn users(key: &Key, weighs: Weighs, called: Self) -> String {
-        let users: Vec<&str> = Self::ALL.into_iter().filter(|purpose| purpose.uses(key, weighs)).map(Self::command).collect();
+        let mut users: Vec<&str> = Self::ALL.into_iter().filter(|purpose| purpose.uses(key, weighs)).map(Self::command).collect();
+        users.dedup();
+        if called == Self::MapMesh {
+            users.iter_mut().filter(|user| **user == "map").for_each(|user| *user = "map over a DEM");
+        }
         let own = users.contains(&called.command());
         match (own, called) {
             (true, Self::Map { .. }) => ": it is used with --goal, --effort, --amount-output or --simulate".to_owned(),

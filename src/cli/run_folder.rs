@@ -7,13 +7,14 @@ use std::{
 
 use chta::{
     chain::csv::write_chain_csv,
-    report::{CrsRecord, DocumentKind},
-    study::{Planned, Simulated},
+    figure::SeenFrom,
+    report::{CrsRecord, DocumentKind, MapKnowledge, write_path_csv},
+    study::{MeshRouted, MeshSimulated, Planned, Simulated},
 };
 
 use super::{
     Failure, claims,
-    load::Loaded,
+    load::{Loaded, MeshPlanInput},
     output::{self, Pending},
     trajectory::TrajectoryFile,
 };
@@ -28,7 +29,7 @@ const PICTURE: &str = "path.svg";
 const TRIAL_PICTURES: [&str; 2] = ["trials.svg", "landings.svg"];
 
 /// Files that only some runs have: those left by an earlier run that had a path, trials or another map would contradict this one.
-const OF_SOME_RUNS: [&str; 5] = ["path.geojson", "path.prj", "simulation.json", TRIAL_PICTURES[0], TRIAL_PICTURES[1]];
+const OF_SOME_RUNS: [&str; 6] = ["chain.csv", "path.geojson", "path.prj", "simulation.json", TRIAL_PICTURES[0], TRIAL_PICTURES[1]];
 
 /// The files of a run before they are written.
 #[derive(Debug)]
@@ -92,6 +93,27 @@ impl<'a> RunFolder<'a> {
             if let Some(drawn) = picture {
                 self.files.push((name, output::encoded(drawn, Path::new(name))?));
             }
+        }
+        Ok(())
+    }
+
+    /// Adds the path over a mesh, the answer and its picture.
+    pub(crate) fn plan_over_mesh(&mut self, routed: &MeshRouted, input: &MeshPlanInput) -> Result<(), Failure> {
+        let mut path_csv = Vec::new();
+        write_path_csv(&routed.answer.path, MapKnowledge::Metres, &mut path_csv)
+            .map_err(|error| Failure::message(format!("path.csv: {error}")))?;
+        let result = input.document(DocumentKind::RunMesh, &routed.warnings, &routed.answer)?;
+        self.files.extend([("path.csv", path_csv), (RESULT, result.into_bytes())]);
+        self.files.push((PICTURE, output::encoded(routed.picture(&input.scenario, SeenFrom::default()), Path::new(PICTURE))?));
+        Ok(())
+    }
+
+    /// Adds the answer of the trials over a mesh and its picture.
+    pub(crate) fn trials_over_mesh(&mut self, simulated: &MeshSimulated, input: &MeshPlanInput) -> Result<(), Failure> {
+        let document = input.document(DocumentKind::SimulateMesh, &simulated.warnings, &simulated.answer)?;
+        self.files.push(("simulation.json", document.into_bytes()));
+        if let Some(drawn) = simulated.picture(&input.scenario) {
+            self.files.push((TRIAL_PICTURES[0], output::encoded(drawn, Path::new(TRIAL_PICTURES[0]))?));
         }
         Ok(())
     }

@@ -92,7 +92,8 @@ impl Role {
             Self::Terrain => "an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid) or a mesh (OBJ, STL, PLY)",
             Self::Pairs => "a CSV file of pairs with the header start_x_m,goal_x_m",
             Self::MapTarget => {
-                "an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid), or a scenario (TOML) or result (JSON) with terrain.dem"
+                "an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid), or a scenario (TOML) or result (JSON) with terrain.dem, or \
+                 with terrain.mesh and route = \"free\""
             }
             Self::Starts => "a CSV file of positions with the header x_m,y_m",
             Self::MeshKey => "a mesh (OBJ, STL, PLY)",
@@ -228,7 +229,11 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
         (FileKind::Mesh(..), Role::Chain | Role::Pairs | Role::Scenario | Role::ScenarioOption) => {
             from_terrain("mesh", &name, &toml)
         }
-        (FileKind::Mesh(..), Role::Dem | Role::MapTarget) => {
+        (FileKind::Mesh(..), Role::MapTarget) => format!(
+            "name it in a scenario: [terrain] mesh = {toml} with route = \"free\", start_m and goal_m = [x, y, z]; a mesh can be cut as well: `chta slice \
+             {name} --from X,Y --to X,Y -o chain.csv`"
+        ),
+        (FileKind::Mesh(..), Role::Dem) => {
             format!("a mesh can be cut, not mapped: `chta slice {name} --from X,Y --to X,Y -o chain.csv`")
         }
         (FileKind::ChainCsv, Role::Dem | Role::MapTarget | Role::Terrain) => format!(

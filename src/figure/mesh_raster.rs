@@ -11,9 +11,11 @@
 //! ceiling and the near wall of a cave do not hide what is in it.
 
 use nalgebra::{Point3, Vector3};
+use rayon::prelude::*;
 
 use super::{
     bitmap::{Form, Pixels},
+    mesh_paint::{Paint, Tone},
     sheet::Place,
 };
 use crate::terrain::{Mesh, MeshBounds};
@@ -30,10 +32,17 @@ const OUTLINE: u8 = 1;
 const CONTOUR: u8 = 2;
 const VEIL: u8 = 3;
 const FIRST_GREY: u8 = 4;
+/// The entry after the greys: the colours of places, each with so many shades.
+const FIRST_PAINT: u8 = FIRST_GREY + SHADES;
+const PAINT_SHADES: u8 = 16;
+/// How dark the darkest shade of a colour is.
+const DARKEST: f64 = 0.62;
 /// Towards the light: from the upper left, in front.
 const LIGHT: [f64; 3] = [-0.45, 0.7, 0.55];
 /// A step in depth of this share of the view is an outline.
 const STEP: f64 = 0.02;
+/// A height that many steps below a contour line is on it.
+const ON_LINE: f64 = 1e-6;
 /// The period of the dots of the veil, pixels.
 const PERIOD: usize = 5;
 
@@ -100,7 +109,11 @@ pub(super) struct Seen {
     height: usize,
     /// How near the facet of a pixel is to the viewer, m; minus infinity without one.
     near_m: Vec<f64>,
+    /// The facet of a pixel, where there is one that faces the viewer.
+    facets: Vec<u32>,
     inks: Vec<u8>,
+    /// The colours of places, if they have any.
+    colours: Vec<[u8; 3]>,
     per_m: f64,
     /// The depth of the whole view, m.
     deep_m: f64,
@@ -118,6 +131,8 @@ impl Seen {
             width,
             height,
             near_m: vec![f64::NEG_INFINITY; width * height],
+            facets: vec![u32::MAX; width * height],
+            colours: Vec::new(),
             inks: vec![PAGE; width * height],
             per_m,
             deep_m,
@@ -138,9 +153,10 @@ impl Seen {
             }
             let bright = 0.25 * facing + 0.75 * normal.dot(&light).max(0.0);
             let ink = FIRST_GREY + shade(bright);
+            let facet = u32::try_from(number).unwrap_or(u32::MAX);
             seen.fill(view, &corners, cut_z_m, |seen, at, near_m| {
                 if near_m > seen.near_m[at] {
-                    (seen.near_m[at], seen.inks[at]) = (near_m, ink);
+                    (seen.near_m[at], seen.inks[at], seen.facets[at]) = (near_m, ink, facet);
                 }
             });
         }
@@ -225,7 +241,8 @@ impl Seen {
 
     /// Contour lines at whole multiples of a step of how near the surface is: of its height, seen from above.
     pub(super) fn contours(&mut self, step_m: f64) {
-        let band = |near_m: f64| (near_m / step_m).floor();
+        // A level facet at such a height lies on one side of its line, whatever the last digits of its corners.
+        let band = |near_m: f64| (near_m / step_m + ON_LINE).floor();
         let mut lines = Vec::new();
         for row in 0..self.height.saturating_sub(1) {
             for column in 0..self.width.saturating_sub(1) {
@@ -242,6 +259,29 @@ impl Seen {
         }
         for at in lines {
             self.inks[at] = CONTOUR;
+        }
+    }
+
+    /// Gives the facets that are seen the colours of their places, in the shades of their normals; outlines, contour lines and the veil stay.
+    pub(super) fn paint(&mut self, mesh: &Mesh, view: &View, paint: &Paint) {
+        let inks: Vec<u8> = (0..self.inks.len()).into_par_iter().map(|at| self.painted(mesh, view, paint, at)).collect();
+        self.inks = inks;
+        self.colours = paint.colours().to_vec();
+    }
+
+    /// The ink of a pixel with its colour.
+    fn painted(&self, mesh: &Mesh, view: &View, paint: &Paint, at: usize) -> u8 {
+        let ink = self.inks[at];
+        let Some(corners) = mesh.indices().get(self.facets[at] as usize).filter(|_| ink >= FIRST_GREY) else { return ink };
+        let [a, b, c] = corners.map(|corner| mesh.vertices()[corner as usize]);
+        let Some(normal) = (b - a).cross(&(c - a)).try_normalize(0.0) else { return ink };
+        let (row, column) = (at / self.width, at % self.width);
+        let across = self.window.low[0] + middle(column) / self.per_m;
+        let up = self.window.high[1] - middle(row) / self.per_m;
+        let place = view.across * across + view.up * up + view.near * self.near_m[at];
+        match paint.of(&place.into(), &normal, (row, column)) {
+            Tone::Colour(colour) => FIRST_PAINT + colour * PAINT_SHADES + (ink - FIRST_GREY) / (SHADES / PAINT_SHADES),
+            Tone::Stripe => OUTLINE,
         }
     }
 
@@ -265,6 +305,13 @@ impl Seen {
         };
         let mut colours = vec![[255; 3], [60; 3], [128, 96, 60], [176; 3]];
         colours.extend((0..SHADES).map(grey));
+        let shades = 0..PAINT_SHADES;
+        let share = |shade: u8| DARKEST + (1.0 - DARKEST) * f64::from(shade) / f64::from(PAINT_SHADES - 1);
+        let painted = self
+            .colours
+            .iter()
+            .flat_map(|colour| shades.clone().map(|shade| colour.map(|part| byte(share(shade) * f64::from(part)))));
+        colours.extend(painted);
         Pixels { width: self.width, height: self.height, form: Form::Palette(colours), bytes: self.inks }
     }
 }

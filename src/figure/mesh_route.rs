@@ -4,16 +4,13 @@ use nalgebra::{Point3, Vector3};
 
 use super::{
     Caption, FigureError, Picture,
-    axes::Panel,
     bands::mixed,
     keys::{self, Swatch},
-    map::{MeshPlan, draw_mesh_plan, goal_symbol, missed_symbol, nearest_symbol, scale_bar, start_symbol},
-    mesh_raster::{Seen, View, Window},
+    map::{MeshPlan, draw_mesh_plan, goal_symbol, missed_symbol, nearest_symbol, start_symbol},
+    mesh_oblique::{Oblique, named},
     mesh_table,
-    palette::{AXIS, BLUE, GREEN, ORANGE, PURPLE, RIGHT_MM, SKY, SMALL_MM, VERMILION, WHITE},
-    picture::{MARGIN_MM, paragraph},
-    sheet::{Anchor, Hang, Label, Pen, Place, Sheet, SheetImage},
-    ticks::short,
+    palette::{BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, WHITE},
+    sheet::{Pen, Place, Sheet},
 };
 use crate::{
     path::{Hop, HopPath},
@@ -69,14 +66,10 @@ pub struct MeshRouteFigure<'a> {
     pub nearest: Option<Point3<f64>>,
 }
 
-/// The greatest height of the oblique view.
-const TALL_MM: f64 = 110.0;
 /// Pieces of a flight.
 const PIECES: u32 = 64;
 /// What is shown around the paths, as a share of their greatest extent.
 const MARGIN: f64 = 0.3;
-/// Room beside what is shown, as a share of its extent.
-const BESIDE: f64 = 0.04;
 /// Above this number of hops only some of the landings have their number.
 const MOST_NUMBERED: usize = 12;
 /// The colours of paths.
@@ -171,82 +164,47 @@ impl MeshRouteFigure<'_> {
 
     /// The oblique view; returns where it ends.
     fn oblique(&self, sheet: &mut Sheet, around: &Around, flights: &[Vec<Vec<Point3<f64>>>], top_mm: f64) -> f64 {
-        let view = View::from_deg(self.seen_from.azimuth_deg, self.seen_from.elevation_deg);
-        let (low, high) = self.extent(&view, around, flights);
-        let wide_mm = RIGHT_MM - MARGIN_MM;
-        let mm_per_m = (wide_mm / (high[0] - low[0])).min(TALL_MM / (high[1] - low[1]));
-        let left_mm = MARGIN_MM + 0.5 * (wide_mm - (high[0] - low[0]) * mm_per_m);
-        let window = Window { low, high, mm_per_m, corner_mm: (left_mm, top_mm) };
-        let (width_mm, height_mm) = window.size_mm();
-        let seen = Seen::of(self.mesh, &view, window, None);
-        let panel = Panel { left: left_mm, top: top_mm, right: left_mm + width_mm, bottom: top_mm + height_mm };
-        for (number, route) in flights.iter().enumerate().rev() {
-            let pen = Self::pen(number);
-            for hop in route {
-                draw_flight(sheet, (&view, &window, &seen), hop, pen);
-            }
-        }
-        self.symbols(sheet, (&view, &window, &seen), flights);
-        compass(sheet, &view, (panel.left + 9.0, panel.bottom - 8.0));
-        let SeenFrom { azimuth_deg, elevation_deg } = self.seen_from;
-        scale_bar(sheet, (MARGIN_MM, top_mm - 3.0), mm_per_m, 0.3 * wide_mm);
-        sheet.images.push(SheetImage { left_mm, top_mm, width_mm, height_mm, pixels: seen.into_pixels() });
-        panel.outline(sheet);
-        let text = format!(
-            "Oblique view, seen from azimuth {} deg (clockwise from north, +y), {} deg above the horizontal; the scale is that of lengths across the \
-             view. Dots: facets seen from behind.",
-            short(azimuth_deg),
-            short(elevation_deg)
-        );
-        paragraph(sheet, &text, SMALL_MM, false, panel.bottom + 1.0)
-    }
-
-    /// The lower left and the upper right end of what is shown in a view: the corners of facets around the paths, and the flights.
-    fn extent(&self, view: &View, around: &Around, flights: &[Vec<Vec<Point3<f64>>>]) -> ([f64; 2], [f64; 2]) {
         let is_shown = |at: &&Point3<f64>| (0..3).all(|axis| (around.low[axis]..=around.high[axis]).contains(&at[axis]));
         let corners = self.mesh.vertices().iter().filter(is_shown);
         let ends = [&self.start, &self.goal].into_iter().chain(&self.nearest);
-        let (low, high) = corners
-            .chain(flights.iter().flatten().flatten())
-            .chain(ends)
-            .map(|point| view.of(point))
-            .fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), at| {
-                ([low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])])
-            });
-        let beside_m = BESIDE * (high[0] - low[0]).max(high[1] - low[1]).max(f64::MIN_POSITIVE);
-        // A plate with its corners far away has none around the paths.
-        let beside_m = if beside_m > f64::MIN_POSITIVE { beside_m } else { 0.5 * (around.high - around.low).amax() };
-        (low.map(|end| end - beside_m), high.map(|end| end + beside_m))
+        let points = corners.chain(flights.iter().flatten().flatten()).chain(ends);
+        let oblique = Oblique::around(self.mesh, self.seen_from, (points, (around.high - around.low).amax()), None, top_mm);
+        for (number, route) in flights.iter().enumerate().rev() {
+            let pen = Self::pen(number);
+            for hop in route {
+                draw_flight(sheet, &oblique, hop, pen);
+            }
+        }
+        self.symbols(sheet, &oblique, flights);
+        oblique.finish(sheet, "")
     }
 
     /// Landings with their numbers, start and goal.
-    fn symbols(&self, sheet: &mut Sheet, seen: (&View, &Window, &Seen), flights: &[Vec<Vec<Point3<f64>>>]) {
-        let (view, window, depth) = seen;
+    fn symbols(&self, sheet: &mut Sheet, oblique: &Oblique, flights: &[Vec<Vec<Point3<f64>>>]) {
         for (number, route) in flights.iter().enumerate() {
             for landing in route.iter().filter_map(|hop| hop.last()) {
-                let at = view.of(landing);
                 let pen = Self::pen(number);
-                if depth.hides(at) {
-                    sheet.ring(window.place(at), 0.55, hidden(pen));
+                if oblique.seen.hides(oblique.view.of(landing)) {
+                    sheet.ring(oblique.place(landing), 0.55, hidden(pen));
                 } else {
-                    sheet.dot(window.place(at), 0.6, pen.colour);
+                    sheet.dot(oblique.place(landing), 0.6, pen.colour);
                 }
             }
         }
         if let Some(nearest) = self.nearest {
-            nearest_symbol(sheet, window.place(view.of(&nearest)));
+            nearest_symbol(sheet, oblique.place(&nearest));
         }
         let goal = if self.routes.is_empty() { missed_symbol } else { goal_symbol };
-        start_symbol(sheet, window.place(view.of(&self.start)));
-        goal(sheet, window.place(view.of(&self.goal)));
-        named(sheet, window.place(view.of(&self.start)), "start");
-        named(sheet, window.place(view.of(&self.goal)), "goal");
+        start_symbol(sheet, oblique.place(&self.start));
+        goal(sheet, oblique.place(&self.goal));
+        named(sheet, oblique.place(&self.start), "start");
+        named(sheet, oblique.place(&self.goal), "goal");
         if let [route] = flights {
             let every = route.len().div_ceil(MOST_NUMBERED).max(1);
             let between = (1usize..).zip(route).take(route.len().saturating_sub(1));
             for (number, hop) in between.filter(|(number, _)| number.is_multiple_of(every)) {
                 if let Some(landing) = hop.last() {
-                    named(sheet, window.place(view.of(landing)), &number.to_string());
+                    named(sheet, oblique.place(landing), &number.to_string());
                 }
             }
         }
@@ -270,6 +228,8 @@ impl MeshRouteFigure<'_> {
             paths: paths.collect(),
             start: self.start.xy(),
             goal: self.goal.xy(),
+            goal_hops: self.routes.first().map(|route| route.path.hops.len() as u64),
+            paint: None,
         };
         draw_mesh_plan(sheet, &plan, top_mm)
     }
@@ -281,9 +241,9 @@ fn hidden(pen: Pen) -> Pen {
 }
 
 /// A flight, dashed and paler where it is behind a facet.
-fn draw_flight(sheet: &mut Sheet, (view, window, seen): (&View, &Window, &Seen), points: &[Point3<f64>], pen: Pen) {
+fn draw_flight(sheet: &mut Sheet, oblique: &Oblique, points: &[Point3<f64>], pen: Pen) {
     let placed: Vec<(Place, bool)> =
-        points.iter().map(|point| view.of(point)).map(|at| (window.place(at), seen.hides(at))).collect();
+        points.iter().map(|point| (oblique.place(point), oblique.seen.hides(oblique.view.of(point)))).collect();
     let mut from = 0;
     while from + 1 < placed.len() {
         let is_hidden = placed[from].1 && placed[from + 1].1;
@@ -299,35 +259,5 @@ fn draw_flight(sheet: &mut Sheet, (view, window, seen): (&View, &Window, &Seen),
             sheet.line(part, pen);
         }
         from = to;
-    }
-}
-
-/// A bold name beside a symbol, on white, where there is room for it.
-fn named(sheet: &mut Sheet, (x, y): Place, name: &str) {
-    let beside = [(2.4, 0.0, Anchor::Start), (-2.4, 0.0, Anchor::End), (0.0, -3.4, Anchor::Middle), (0.0, 3.4, Anchor::Middle)];
-    let free = beside.into_iter().find_map(|(right, down, anchor)| {
-        let label = Label { bold: true, ..Label::new(name, (x + right, y + down), SMALL_MM).hung(anchor, Hang::Through) };
-        (!sheet.is_taken(&label)).then_some(label)
-    });
-    if let Some(label) = free {
-        let (left, top, right, bottom) = label.bounds_mm();
-        sheet.area(keys::rectangle((left - 0.3, top - 0.2), (right + 0.3, bottom + 0.2)), WHITE, 0.7);
-        sheet.label(label);
-    }
-}
-
-/// Arrows to the east, to the north and up.
-fn compass(sheet: &mut Sheet, view: &View, (x, y): Place) {
-    const LONG_MM: f64 = 5.5;
-    let pen = Pen { colour: AXIS, width_mm: 0.3 };
-    for (name, axis) in [("x", Point3::new(1.0, 0.0, 0.0)), ("y", Point3::new(0.0, 1.0, 0.0)), ("z", Point3::new(0.0, 0.0, 1.0))] {
-        let [across, up, _] = view.of(&axis);
-        // Along the line of sight there is no arrow.
-        if libm::hypot(across, up) < 0.15 {
-            continue;
-        }
-        let at = |length: f64| (x + across * length, y - up * length);
-        sheet.line(vec![(x, y), at(LONG_MM)], pen);
-        sheet.label(Label::new(name, at(LONG_MM + 1.6), SMALL_MM).hung(Anchor::Middle, Hang::Through));
     }
 }

@@ -32,7 +32,10 @@ mod keys;
 mod legend;
 mod map;
 mod mesh_hop;
+mod mesh_oblique;
+mod mesh_paint;
 mod mesh_raster;
+mod mesh_reach;
 mod mesh_route;
 mod mesh_table;
 mod of_answers;
@@ -65,6 +68,7 @@ pub use map::{
     MapPosts, PlanView, RasterStyle, ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,
 };
 pub use mesh_hop::{MeshHopFigure, draw_mesh_hop};
+pub use mesh_reach::{MeshReachFigure, ReachedContact, draw_mesh_reach};
 pub use mesh_route::{MeshRouteFigure, MeshRouteLine, SeenFrom, draw_mesh_route};
 pub use picture::{Caption, Picture, PictureFormat};
 pub use rose::draw_rose;

@@ -1,5 +1,6 @@
-//! What can be reached from one position of a map.
+//! What can be reached from one position of a map or a mesh.
 
+pub mod contacts;
 mod fan;
 pub mod map;
 

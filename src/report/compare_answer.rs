@@ -25,16 +25,22 @@ pub struct CompareRow {
     pub file: String,
     /// Its title.
     pub name: String,
-    /// Start, m; null for a case without an answer.
+    /// Start, m; null for a case without an answer, and over a mesh.
     pub start_x_m: Option<f64>,
-    /// Goal, m; null for a case without an answer.
+    /// Goal, m; null for a case without an answer, and over a mesh.
     pub goal_x_m: Option<f64>,
+    /// Start on the surface of a mesh, [x, y, z], m; absent over other terrain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start_m: Option<[f64; 3]>,
+    /// Goal on the surface of a mesh, [x, y, z], m; absent over other terrain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub goal_m: Option<[f64; 3]>,
     /// `traversable`, `no-path-found` (also where the propellant does not last), or `untraversable` if that is proved; null for a case
     /// without an answer.
     pub verdict: Option<ProofVerdict>,
     /// The fewest hops found.
     pub hops: Option<u64>,
-    /// With a proof: no path has fewer hops; null if there is no path at all.
+    /// With a proof, and over a mesh by the greatest speeds: no path has fewer hops; null if there is no path at all.
     #[serde(default, deserialize_with = "stated", skip_serializing_if = "Option::is_none")]
     pub lower_bound: Option<Option<u64>>,
     /// The totals of the hops.
@@ -117,8 +123,20 @@ const DELTA_V: &str = "delta_v_m_s";
 impl CompareRow {
     /// The row of a case without an answer.
     pub const fn failed(file: String, name: String, error: String) -> Self {
-        let (start_x_m, goal_x_m, verdict, hops, lower_bound, totals, margins) = (None, None, None, None, None, None, None);
-        Self { file, name, start_x_m, goal_x_m, verdict, hops, lower_bound, totals, margins, error: Some(error) }
+        Self {
+            file,
+            name,
+            start_x_m: None,
+            goal_x_m: None,
+            start_m: None,
+            goal_m: None,
+            verdict: None,
+            hops: None,
+            lower_bound: None,
+            totals: None,
+            margins: None,
+            error: Some(error),
+        }
     }
 
     /// Whether there is a path that the machine can fly.

@@ -17,12 +17,16 @@ pub enum DocumentKind {
     Check,
     /// The same for several pairs of ends: [`PairsAnswer`](super::PairsAnswer).
     CheckPairs,
+    /// The path of a result over a mesh, flown again: [`MeshCheckAnswer`](super::MeshCheckAnswer).
+    CheckMesh,
     /// A path: [`PlanAnswer`](super::PlanAnswer).
     Plan,
     /// A path over a mesh: [`MeshPlanAnswer`](super::MeshPlanAnswer).
     PlanMesh,
     /// A path, beside the other files of a run: [`PlanAnswer`](super::PlanAnswer).
     Run,
+    /// A path over a mesh, beside the other files of a run: [`MeshPlanAnswer`](super::MeshPlanAnswer).
+    RunMesh,
     /// Trials along a path: [`SimulateAnswer`](super::SimulateAnswer).
     Simulate,
     /// Trials along a path over a mesh: [`MeshSimulateAnswer`](super::MeshSimulateAnswer).
@@ -39,20 +43,24 @@ pub enum DocumentKind {
     Fan,
     /// Hops to all posts of a map: [`MapAnswer`](super::MapAnswer).
     Map,
+    /// Hops to contacts all over a mesh: [`MeshMapAnswer`](super::MeshMapAnswer).
+    MapMesh,
     /// What an answer takes before it is computed: [`SizeAnswer`](super::SizeAnswer).
     Size,
 }
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 19] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
         Self::CheckPairs,
+        Self::CheckMesh,
         Self::Plan,
         Self::PlanMesh,
         Self::Run,
+        Self::RunMesh,
         Self::Simulate,
         Self::SimulateMesh,
         Self::SimulateExperiment,
@@ -61,6 +69,7 @@ impl DocumentKind {
         Self::Compare,
         Self::Fan,
         Self::Map,
+        Self::MapMesh,
         Self::Size,
     ];
 
@@ -71,9 +80,11 @@ impl DocumentKind {
             Self::HopMesh => "hop-mesh",
             Self::Check => "check",
             Self::CheckPairs => "check-pairs",
+            Self::CheckMesh => "check-mesh",
             Self::Plan => "plan",
             Self::PlanMesh => "plan-mesh",
             Self::Run => "run",
+            Self::RunMesh => "run-mesh",
             Self::Simulate => "simulate",
             Self::SimulateMesh => "simulate-mesh",
             Self::SimulateExperiment => "simulate-experiment",
@@ -82,6 +93,7 @@ impl DocumentKind {
             Self::Compare => "compare",
             Self::Fan => "fan",
             Self::Map => "map",
+            Self::MapMesh => "map-mesh",
             Self::Size => "size",
         }
     }

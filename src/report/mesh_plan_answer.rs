@@ -195,7 +195,7 @@ impl MeshPlanAnswer {
 }
 
 /// A point in words.
-fn point([x_m, y_m, z_m]: [f64; 3]) -> String {
+pub(super) fn point([x_m, y_m, z_m]: [f64; 3]) -> String {
     format!("({}, {}, {}) m", place(x_m), place(y_m), place(z_m))
 }
 

@@ -14,7 +14,9 @@ pub mod landings;
 mod limit_counts;
 mod limit_pair;
 mod map_answer;
+mod mesh_check_answer;
 mod mesh_hop_answer;
+mod mesh_map_answer;
 mod mesh_plan_answer;
 mod mesh_simulate_answer;
 mod objective_record;
@@ -57,9 +59,14 @@ pub use map_answer::{
     GoalRecord, MapAnswer, MapBudgetRecord, MapEffortRecord, MapObjectiveRecord, MapSummary, MobilityRecord, ReturnRecord,
     StartRecord,
 };
+pub use mesh_check_answer::{MeshCheckAnswer, ViolationRecord, mesh_check_text};
 pub use mesh_hop_answer::{
     MeshBallRecord, MeshBindingRecord, MeshBlockedRecord, MeshContactRecord, MeshFacetRecord, MeshHopAnswer, MeshLimitRecord,
     MeshWindowEndRecord, MeshWindowRecord, mesh_hop_text,
+};
+pub use mesh_map_answer::{
+    MapContactRow, MapContactsRecord, MapRoundRecord, MeshGoalRecord, MeshMapAnswer, MeshReturnRecord, ReachedRecord,
+    mesh_map_text, write_map_contacts_csv,
 };
 pub(crate) use mesh_plan_answer::hops_of;
 pub use mesh_plan_answer::{MeshPlanAnswer, RoadmapGapRecord, RoadmapRecord, RoadmapRoundRecord, mesh_plan_text};

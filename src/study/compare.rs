@@ -26,6 +26,8 @@ impl Compared {
             name: planned.case.scenario.title.clone().unwrap_or_else(|| untitled.to_owned()),
             start_x_m: Some(check.start_x_m),
             goal_x_m: Some(check.goal_x_m),
+            start_m: None,
+            goal_m: None,
             verdict: Some(check.verdict),
             hops: check.hops,
             lower_bound: check.proof.as_ref().map(|proof| proof.lower_bound),

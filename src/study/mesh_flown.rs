@@ -50,7 +50,7 @@ impl MeshRouted {
     ///
     /// # Errors
     /// As [`draw_mesh_route`].
-    pub fn picture(&self, scenario: &Scenario) -> Result<Picture, FigureError> {
+    pub fn picture(&self, scenario: &Scenario, seen_from: SeenFrom) -> Result<Picture, FigureError> {
         let [start, goal] = [self.grown.ends.0, self.grown.ends.1].map(|node| self.grown.roadmap.contact(node).point_m());
         let contacts = self.answer.roadmap.contacts;
         let result = self.path.as_ref().map_or_else(
@@ -64,7 +64,7 @@ impl MeshRouted {
         draw_mesh_route(&MeshRouteFigure {
             caption: Caption { title: title("Free route over a mesh", scenario), lines: vec![conditions(scenario), result] },
             mesh: self.ground.tree().mesh(),
-            seen_from: SeenFrom::default(),
+            seen_from,
             cut_z_m: None,
             start,
             goal,

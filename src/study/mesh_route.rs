@@ -8,8 +8,8 @@ use super::{
     Defect, Front, FrontProblem, MeshHopError,
     free_front::are_the_same,
     front::{amount_row, front_commands, front_hops_max},
+    mesh_ends::{MeshEnds, mesh_ends},
     mesh_flown::flown_again,
-    mesh_hop::{check_keys, mesh_ground, on_mesh},
 };
 use crate::{
     graph::proof::ProofVerdict,
@@ -27,7 +27,7 @@ use crate::{
         DeratingRecord, FrontRecord, FrontSearchRecord, HopRecord, MeshContactRecord, MeshPlanAnswer, ObjectiveRecord,
         PropellantShortage, RoadmapRecord, TotalsRecord, hops_of,
     },
-    scenario::{Scenario, TerrainSource},
+    scenario::Scenario,
 };
 
 /// What is asked.
@@ -129,31 +129,14 @@ pub struct MeshRouted {
 /// [`MeshRouteError`].
 pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> Result<MeshRouted, MeshRouteError> {
     let scenario = question.scenario;
-    let Some(TerrainSource::MeshInSpace { path: file, scale, start_m, goal_m }) = &scenario.terrain else {
-        return Err(MeshRouteError::NoMesh);
-    };
-    check_keys(scenario)?;
     if let Some(front) = question.front {
         front.check(scenario)?;
         if front == Front::HOPS_RISK {
             return Err(MeshRouteError::RiskFront);
         }
     }
-    let (ground, mut warnings) = mesh_ground(scenario, &question.base.join(file), *scale)?;
+    let MeshEnds { ground, scale, given_m, surface, stood: ends, stand_off_m, mut warnings } = mesh_ends(scenario, question.base)?;
     let search = &scenario.mesh_search;
-    let given_m = [*start_m, *goal_m];
-    let surface = [(*start_m, "start"), (*goal_m, "goal")].map(|(at, end)| {
-        let contact = on_mesh(&ground, at, end, &mut warnings)?;
-        within(search.bounds, end, contact)
-    });
-    let [start, goal] = surface;
-    let surface = [start?, goal?];
-    let stand_off_m = search.stand_off_m.unwrap_or(0.0);
-    let stood = |contact: &MeshContact, end| {
-        let point_m = contact.point_m();
-        ground.stood_off(contact, stand_off_m).ok_or(MeshRouteError::NoStandOff { end, point_m, stand_off_m })
-    };
-    let ends = [stood(&surface[0], "start")?, stood(&surface[1], "goal")?];
     let mut sampler = ContactSampler::new(&ground, search.bounds, stand_off_m, search.seed.unwrap_or(0))?;
     let (objective, budgets) = (scenario.full_objective(), scenario.total_budgets());
     let asked = RoadmapQuestion {
@@ -182,19 +165,9 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
     warnings.extend(left_out(scenario, &grown, facets));
     let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends, progress)).transpose()?;
     let front = question.front.map(|front| front_of(scenario, &ground, &grown, (front.amount(), path.as_ref()))).transpose()?;
-    let mut answer = answer((scenario, &ground), (given_m, &surface, *scale), (&grown, facets), (path.as_ref(), gap.as_ref()));
+    let mut answer = answer((scenario, &ground), (given_m, &surface, scale), (&grown, facets), (path.as_ref(), gap.as_ref()));
     (answer.front, answer.front_search) = front.unzip();
     Ok(MeshRouted { ground, grown, path, answer, warnings })
-}
-
-/// A contact, if it lies within the bounds.
-fn within(bounds: Option<SpaceBounds>, end: &'static str, contact: MeshContact) -> Result<MeshContact, MeshRouteError> {
-    match bounds {
-        Some(bounds) if !bounds.contain(&contact.point_m()) => {
-            Err(MeshRouteError::OutsideBounds { end, point_m: contact.point_m(), bounds })
-        }
-        _ => Ok(contact),
-    }
 }
 
 /// The hops of a path of the roadmap.

@@ -1,6 +1,10 @@
 //! How reliably a free route over a mesh is flown.
 
+#[cfg(feature = "plot")]
+use super::simulate::trials_picture;
 use super::{MeshRouted, SimulateOptions, TrialGround, simulate::by_policy};
+#[cfg(feature = "plot")]
+use crate::figure::{FigureError, Picture};
 use crate::{
     chain::ConstraintProblem,
     progress::Progress,
@@ -45,6 +49,17 @@ pub struct MeshSimulated {
     pub answer: MeshSimulateAnswer,
     /// The warnings about the plan and the trials.
     pub warnings: Vec<String>,
+}
+
+#[cfg(feature = "plot")]
+impl MeshSimulated {
+    /// The sheet with the landing errors and the outcomes of the trials; `None` if nothing was flown.
+    ///
+    /// # Errors
+    /// [`FigureError`].
+    pub fn picture(&self, scenario: &Scenario) -> Option<Result<Picture, FigureError>> {
+        (!self.summaries.is_empty()).then(|| trials_picture(scenario, &self.summaries, None))
+    }
 }
 
 /// Flies a plan over a mesh under the errors of its scenario, to the first contact of every flight with any facet. A hop that is planned anew

@@ -5,7 +5,7 @@
 //! writes files. What a result says of its question comes from [`Case::record`].
 //!
 //! ```text
-//! hop          one hop, limit by limit; mesh_hop over a mesh, mesh_route a path over one
+//! hop          one hop, limit by limit; mesh_hop over a mesh, mesh_route a path over one, mesh_reach what is reached
 //! check        whether a path exists; check_pairs for many pairs
 //! plan         the path of fewest hops, with a proof and flown again if that is wanted
 //! simulate     how reliably a plan is flown; experiment for the experiments
@@ -37,9 +37,13 @@ mod journey;
 mod journey_path;
 pub mod map;
 mod measured;
+mod mesh_compare;
+mod mesh_ends;
 mod mesh_flaws;
 mod mesh_flown;
 mod mesh_hop;
+mod mesh_reach;
+mod mesh_read_back;
 mod mesh_route;
 mod mesh_trials;
 mod nodes;
@@ -81,7 +85,10 @@ pub use front::{Front, FrontProblem};
 pub use hop::{HopError, Hopped, hop};
 pub use journey::{JourneyError, Proof};
 pub use measured::with_measured_errors;
+pub use mesh_compare::{MeshCompared, MeshComparison};
 pub use mesh_hop::{MeshHopError, MeshHopQuestion, MeshHopped, mesh_hop};
+pub use mesh_reach::{MeshReachQuestion, MeshReached, mesh_reach};
+pub use mesh_read_back::{MeshChecked, MeshReadBackError, check_over_mesh};
 pub use mesh_route::{MeshRouteError, MeshRouteQuestion, MeshRouted, mesh_route};
 pub use mesh_trials::{MeshSimulated, MeshTrialsError, simulate_over_mesh};
 pub use on_body::{OfBody, dem_on_body, on_body};

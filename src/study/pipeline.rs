@@ -120,8 +120,8 @@ pub enum PipelineError {
     },
     /// A mesh that is not sliced.
     #[error(
-        "terrain.route is \"free\" over a mesh, which plans and their trials alone answer: for any other question give start_m and \
-         goal_m = [x, y] with route = \"transect\", along the upper surface, or a dem"
+        "terrain.route is \"free\" over a mesh, which plans, runs, trials, maps and comparisons answer, and checks of their results: for any other question give \
+         start_m and goal_m = [x, y] with route = \"transect\", along the upper surface, or a dem"
     )]
     NotSliced,
     /// A terrain that is larger than the body it is said to lie on.

@@ -174,7 +174,7 @@ impl Planned {
 }
 
 /// The value of a key of a document.
-fn key<T: DeserializeOwned>(document: &Value, key: &'static str) -> Result<T, ReadBackError> {
+pub(super) fn key<T: DeserializeOwned>(document: &Value, key: &'static str) -> Result<T, ReadBackError> {
     serde_json::from_value(document[key].clone()).map_err(|problem| ReadBackError::Key { key, problem })
 }
 
@@ -185,7 +185,7 @@ impl CheckAnswer {
 }
 
 /// Whether every file of a result is there with the same content.
-fn same_inputs(then: &[InputFile], now: &[InputFile]) -> Result<(), ReadBackError> {
+pub(super) fn same_inputs(then: &[InputFile], now: &[InputFile]) -> Result<(), ReadBackError> {
     match then.iter().find(|then| now.iter().all(|now| now.sha256 != then.sha256)) {
         None => Ok(()),
         Some(changed) => Err(ReadBackError::Changed {
@@ -218,10 +218,18 @@ fn hop_of(test: &HopTest, row: &HopRecord, beside: bool) -> Result<Hop, ReadBack
         let across_m = aim.beside.map(|beside| beside.landing_miss_across_m);
         Ok::<_, ReadBackError>(Aim { point: on_chain(aim.aim_x_m)?, miss_m: aim.landing_miss_m, across_m })
     });
-    Ok(Hop {
+    let takeoff = point(row.takeoff_x_m, row.takeoff_z_m, takeoff_at)?;
+    let landing = point(row.landing_x_m, row.landing_z_m, landing_at)?;
+    Ok(commanded(row, [takeoff, landing], aim.transpose()?))
+}
+
+/// A hop between two contacts, with the numbers that a result states.
+pub(super) fn commanded(row: &HopRecord, [takeoff, landing]: [ContactPoint; 2], aim: Option<Aim>) -> Hop {
+    let map = row.map.as_ref();
+    Hop {
         direction: row.direction,
-        takeoff: point(row.takeoff_x_m, row.takeoff_z_m, takeoff_at)?,
-        landing: point(row.landing_x_m, row.landing_z_m, landing_at)?,
+        takeoff,
+        landing,
         heading_deg: map.map_or(if row.direction == Direction::Forward { 90.0 } else { 270.0 }, |map| map.heading_deg),
         takeoff_angle: Angle::from_degrees(row.takeoff_angle_deg),
         takeoff_speed_m_s: row.takeoff_speed_m_s,
@@ -237,7 +245,7 @@ fn hop_of(test: &HopTest, row: &HopRecord, beside: bool) -> Result<Hop, ReadBack
         lower_vertex: None,
         upper_limit: row.binding.upper,
         margins: row.margins.0,
-        aim: aim.transpose()?,
+        aim,
         roll_out: row.roll_out.as_ref().map(RollOut::from),
-    })
+    }
 }

@@ -5,8 +5,9 @@ use serde_json::{Value, json};
 
 use crate::{
     report::{
-        CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshHopAnswer,
-        MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
+        CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshCheckAnswer,
+        MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer,
+        SizeAnswer, TradeAnswer,
     },
     scenario::scenario_schema,
 };
@@ -52,7 +53,8 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Check => derived::<CheckAnswer>(),
         DocumentKind::CheckPairs => derived::<PairsAnswer>(),
         DocumentKind::Plan | DocumentKind::Run => derived::<PlanAnswer>(),
-        DocumentKind::PlanMesh => derived::<MeshPlanAnswer>(),
+        DocumentKind::CheckMesh => derived::<MeshCheckAnswer>(),
+        DocumentKind::PlanMesh | DocumentKind::RunMesh => derived::<MeshPlanAnswer>(),
         DocumentKind::Simulate => derived::<SimulateAnswer>(),
         DocumentKind::SimulateMesh => derived::<MeshSimulateAnswer>(),
         DocumentKind::SimulateExperiment => derived::<ExperimentAnswer>(),
@@ -61,6 +63,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Compare => derived::<CompareAnswer>(),
         DocumentKind::Fan => derived::<FanAnswer>(),
         DocumentKind::Map => derived::<MapAnswer>(),
+        DocumentKind::MapMesh => derived::<MeshMapAnswer>(),
         DocumentKind::Size => derived::<SizeAnswer>(),
     };
     close(&mut schema, false);

@@ -102,7 +102,12 @@ const SLICE: [Trial; 8] = [
     ),
 ];
 
-const MAP: [Trial; 30] = [
+const MAP: [Trial; 31] = [
+    (
+        "--seen-from",
+        &["map", "space.toml", "--plot", "map.svg"],
+        &["map", "space.toml", "--plot", "map.svg", "--seen-from", "100,50"],
+    ),
     (
         "--objective",
         &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
@@ -373,7 +378,12 @@ const CHECK: [Trial; 16] = [
     ("--quiet", &["check", "scenario.toml", "--body", "bennu"], &["check", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-const PLAN: [Trial; 23] = [
+const PLAN: [Trial; 24] = [
+    (
+        "--seen-from",
+        &["plan", "space.toml", "--plot", "path.svg"],
+        &["plan", "space.toml", "--plot", "path.svg", "--seen-from", "100,50"],
+    ),
     (
         "--dry-run",
         &["plan", "map.toml", "--set", "terrain.route=free"],
@@ -877,7 +887,12 @@ const TRADE: [Trial; 18] = [
     ),
 ];
 
-const COMPARE: [Trial; 8] = [
+const COMPARE: [Trial; 9] = [
+    (
+        "--seen-from",
+        &["compare", "space.toml", "space.toml", "--plot", "both.svg"],
+        &["compare", "space.toml", "space.toml", "--plot", "both.svg", "--seen-from", "100,50"],
+    ),
     (
         "--require-all",
         &["compare", "scenario.toml", "map.toml", "--set", "surface.friction_coefficient=0.05"],
@@ -1036,6 +1051,9 @@ fn desk() -> Desk {
     let desk = Desk::with_dem();
     desk.write("starts.csv", "x_m,y_m\n3,4\n15,16\n");
     desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
+    let over_mesh = "mesh = \"plate.obj\"\nroute = \"free\"\nstart_m = [1, 1, 1]\ngoal_m = [7, 7, 2]";
+    let space = desk.read("map.toml").replace("dem = \"ground.tif\"\nstart_m = [1, 2]\ngoal_m = [15, 12]", over_mesh);
+    desk.write("space.toml", space.replace("node_spacing_max_m = 1.0", "contacts_max = 30"));
     desk.write("forward.csv", FORWARD_ONLY);
     desk.write("errors.toml", desk.read("scenario.toml") + ERRORS);
     // A path that the scenario in it would not be planned with.

@@ -6,8 +6,8 @@ use std::{collections::BTreeSet, path::Path, sync::OnceLock};
 
 use chta::report::{
     CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
-    MeshHopAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer,
-    TradeAnswer,
+    MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer,
+    SimulateAnswer, SizeAnswer, TradeAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
 use serde::{Serialize, de::DeserializeOwned};
@@ -93,6 +93,8 @@ pub(crate) fn documents() -> &'static [(String, String)] {
         );
         std::fs::write(file("space.toml"), space).unwrap();
         commands.push(format!("plan {} --front hops,arc-length", file("space.toml")));
+        commands.push(format!("map {} --return --hops-max 2", file("space.toml")));
+        commands.push(format!("run {} -o {}", file("space.toml"), file("space")));
         let errors = "--set uncertainty.takeoff_speed_sigma_fraction=0.02 --set uncertainty.goal_tolerance_m=1 --trials 20 --compare";
         commands.push(format!("simulate {} {errors} --success-min 0.5", file("space.toml")));
         let pole = root.join("../shared/dem/lola_dem_north.tif");
@@ -113,6 +115,9 @@ pub(crate) fn documents() -> &'static [(String, String)] {
             (command, stdout)
         };
         let mut documents: Vec<_> = commands.into_iter().map(written).collect();
+        // The result of a run is there once it was written; under another gravity its path breaks limits.
+        documents.push(written(format!("check {}", file("space/result.json"))));
+        documents.push(written(format!("check {} --set body.gravity_m_s2=9", file("space/result.json"))));
         let trials = std::fs::read_to_string(folder.path().join("rolling/simulation.json")).unwrap();
         documents.push(("simulation.json of a run".to_owned(), trials));
         documents
@@ -130,7 +135,9 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::Check => of::<CheckAnswer>(text),
         DocumentKind::CheckPairs => of::<PairsAnswer>(text),
         DocumentKind::Plan | DocumentKind::Run => of::<PlanAnswer>(text),
-        DocumentKind::PlanMesh => of::<MeshPlanAnswer>(text),
+        DocumentKind::MapMesh => of::<MeshMapAnswer>(text),
+        DocumentKind::CheckMesh => of::<MeshCheckAnswer>(text),
+        DocumentKind::PlanMesh | DocumentKind::RunMesh => of::<MeshPlanAnswer>(text),
         DocumentKind::Simulate => of::<SimulateAnswer>(text),
         DocumentKind::SimulateMesh => of::<MeshSimulateAnswer>(text),
         DocumentKind::SimulateExperiment => of::<ExperimentAnswer>(text),

@@ -30,6 +30,7 @@ mod maps_command;
 mod measured_errors;
 mod mesh_command;
 mod mesh_inputs;
+mod mesh_map;
 mod mesh_plan;
 mod missing_data;
 mod objective;

@@ -21,7 +21,7 @@ fn quad(text: &mut String, corners: [[f64; 3]; 4]) {
 }
 
 /// A floor and a ceiling of 8 m by 4 m, 3 m apart; a wall half-way, open from `low` to `high`; and a closed box on the floor.
-fn room(low: f64, high: f64) -> Desk {
+pub(crate) fn room(low: f64, high: f64) -> Desk {
     let mut text = String::new();
     quad(&mut text, [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 4.0, 0.0], [0.0, 4.0, 0.0]]);
     quad(&mut text, [[0.0, 0.0, 3.0], [0.0, 4.0, 3.0], [8.0, 4.0, 3.0], [8.0, 0.0, 3.0]]);
@@ -137,7 +137,12 @@ fn trials_fly_the_path_over_the_mesh() {
     assert_eq!(document["path"], desk.json(&[&["plan", "room.toml"][..], &errors].concat())["path"]);
     let floor = desk.run(&[&args[..6], &errors, &["--success-min", "0.999"]].concat());
     assert!(floor.status == 1 && floor.stdout.contains("is not shown"), "{floor:?}");
-    desk.refused(&["simulate", "room.toml", "--plot", "trials.svg"], &["--plot", "this terrain is a mesh", "leave the option out"]);
+    desk.run(&[&["simulate", "room.toml", "--trials", "50", "--plot", "trials.svg"][..], &errors].concat());
+    assert!(desk.read("trials.svg").contains("How the trials ended"));
+    desk.refused(
+        &["simulate", "room.toml", "--plot-map", "trials.svg"],
+        &["--plot-map", "this terrain is a mesh", "leave the option out"],
+    );
     desk.refused(
         &[&["simulate", "room.toml", "--set", "hopper.radius_m=0.01"][..], &errors].concat(),
         &["hopper.radius_m", "set hopper.radius_m = 0"],
@@ -192,7 +197,10 @@ fn what_has_no_meaning_on_a_mesh_is_refused_by_name() {
     }
     for words in [&["check", "room.toml"][..], &["require", "room.toml", "--vary", "hopper.takeoff_speed_max_m_s"]] {
         let ran = desk.run(words);
-        assert!(ran.status == 2 && ran.stderr.contains("which plans and their trials alone answer"), "{words:?}: {ran:?}");
+        assert!(
+            ran.status == 2 && ran.stderr.contains("which plans, runs, trials, maps and comparisons answer"),
+            "{words:?}: {ran:?}"
+        );
     }
     let ran = desk.run(&["plan", "chain.csv", "--set", "search.contacts_max=9", "--body", "moon"]);
     assert!(ran.status == 2 && ran.stderr.contains("search.contacts_max is for free routes over a mesh"), "{ran:?}");

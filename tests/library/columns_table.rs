@@ -12,7 +12,7 @@ use chta::{
     report::{
         CompareAnswer, FanAnswer, HopRecord, MapKnowledge, TradeAnswer,
         landings::{CsvLandings, LandingColumns},
-        trajectory_columns, write_paths_csv,
+        trajectory_columns, write_map_contacts_csv, write_paths_csv,
     },
     scenario::CATALOGUE,
     study::SchemaKind,
@@ -25,7 +25,17 @@ const HEAD: &str = "# Keys and columns\n\nWhat every JSON document and every CSV
      where it has a meaning; \"or null\": it is always there, without a value.\n";
 
 /// Columns that are no key of a JSON document: table, column, meaning.
-const ALONE: [(&str, &str, &str); 44] = [
+const ALONE: [(&str, &str, &str); 54] = [
+    ("contacts", "contact", "number of the contact, from 1: the start has 1, a goal elsewhere 2"),
+    ("contacts", "x_m", "x of the point of the surface"),
+    ("contacts", "y_m", "y of the point of the surface"),
+    ("contacts", "z_m", "height of the point of the surface"),
+    ("contacts", "facet", "the facet it lies on, by its number from 1; on an edge one of them"),
+    ("contacts", "area_m2", "the area it stands for: that of its facet, divided evenly among the contacts on it"),
+    ("contacts", "hops", "fewest hops from the start; blank if it is not reached over these contacts, or not within `--hops-max`"),
+    ("contacts", "from_contact", "the contact that the last hop comes from; blank for the start and where none leads"),
+    ("contacts", "return_hops", "fewest hops back to the start; with `--return`, blank where no way was found"),
+    ("contacts", "return_to_contact", "the contact that the first hop back goes to; with `--return`"),
     ("path", "goal", "number of the goal, from 1; in the paths of `map` alone"),
     ("trajectory", "time_s", "time since the start"),
     ("trajectory", "hop", "number of the hop, from 1"),
@@ -229,6 +239,7 @@ fn tables(records: &Records) -> Vec<(&'static str, &'static str, Vec<String>, Ve
         ),
         ("A path in time (`--trajectory`)", "trajectory", trajectory, vec![]),
         ("Landings of trials (`simulate --output`), CSV and Parquet", "landings", landings, vec![]),
+        ("Contacts of a mesh (`map --output`)", "contacts", header(|out| write_map_contacts_csv(&[], true, out)), vec![]),
         ("`fan --output`", "fan", header(|out| fan.write_csv(out)), vec!["FanRecord"]),
         (
             "`trade --output`",

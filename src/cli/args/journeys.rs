@@ -12,7 +12,7 @@ use clap::Args as ClapArgs;
 use super::{
     super::{Failure, load::OwnKey},
     AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, Position, ProveArgs, SearchArgs, cell_count,
-    maps::SizeArgs,
+    maps::{SizeArgs, ViewArgs},
     max_gib, position, success_share, trial_number,
 };
 
@@ -117,6 +117,8 @@ pub(crate) struct PlanArgs {
     /// Picture (SVG or PNG) to write, with or without a path
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) view: ViewArgs,
     /// Fly the path again by direct simulation and check every limit
     #[arg(long)]
     pub(crate) verify: bool,
@@ -322,6 +324,8 @@ pub(crate) struct CompareArgs {
     /// Picture (SVG or PNG) to write: all paths overlaid
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) view: ViewArgs,
     #[command(flatten)]
     pub(crate) answer: AnswerArgs,
     #[command(flatten)]

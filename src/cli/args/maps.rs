@@ -1,11 +1,15 @@
 //! The options of the commands that answer for a whole DEM, or for all directions from a point of it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use chta::{planner::Amount, quantity::MapPoint, terrain::LonLat};
+use chta::{figure::SeenFrom, planner::Amount, quantity::MapPoint, terrain::LonLat};
 use clap::Args as ClapArgs;
 
 use super::{AnswerArgs, CommonArgs, SearchArgs, lon_lat, map_point};
+use crate::cli::{
+    Failure,
+    output::{self, Pending},
+};
 
 /// Options of commands whose answers may be large.
 #[derive(Clone, Copy, Debug, ClapArgs)]
@@ -23,6 +27,51 @@ impl SizeArgs {
     pub(crate) fn memory_max_bytes(&self) -> Option<u64> {
         self.memory_max_mib.map(|mib| mib << 20)
     }
+}
+
+/// From where the picture of a mesh is seen.
+#[derive(Clone, Copy, Debug, ClapArgs)]
+pub(crate) struct ViewArgs {
+    /// From where the oblique view of a mesh is: azimuth of the viewer, clockwise from north (+y), and elevation, degrees [default: 215,35]
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = seen_from, allow_hyphen_values = true, requires = "plot")]
+    pub(crate) seen_from: Option<SeenFrom>,
+}
+
+impl ViewArgs {
+    /// The direction.
+    pub(crate) fn direction(self) -> SeenFrom {
+        self.seen_from.unwrap_or_default()
+    }
+
+    /// Opens the picture of other terrain than a mesh.
+    pub(crate) fn begin_picture(self, plot: Option<&Path>) -> Result<Option<Pending<'_>>, Failure> {
+        self.without_mesh()?;
+        output::begin_picture("--plot", plot)
+    }
+
+    /// Refuses the option for a picture of other terrain.
+    pub(crate) fn without_mesh(self) -> Result<(), Failure> {
+        match self.seen_from {
+            None => Ok(()),
+            Some(_) => Err(Failure::message(
+                "--seen-from: found this option, which turns the picture of a mesh, and this terrain is none with route = \"free\": leave the option \
+                 out",
+            )),
+        }
+    }
+}
+
+/// Reads an azimuth and an elevation.
+fn seen_from(text: &str) -> Result<SeenFrom, String> {
+    let wanted = || {
+        format!(
+            "found `{text}`, expected azimuth (-360 to 360, clockwise from north) and elevation (-90 to 90) in degrees, such as 215,35"
+        )
+    };
+    let number = |part: &str, most: f64| part.trim().parse::<f64>().ok().filter(|number| (-most..=most).contains(number));
+    let (azimuth, elevation) = text.split_once(',').ok_or_else(wanted)?;
+    let azimuth_deg = number(azimuth, 360.0).ok_or_else(wanted)?;
+    Ok(SeenFrom { azimuth_deg, elevation_deg: number(elevation, 90.0).ok_or_else(wanted)? })
 }
 
 /// Reads a number of MiB.
@@ -127,13 +176,14 @@ pub(crate) struct FanArgs {
 ///
 /// Every edge is one hop on the exact slice between two posts, as `chta slice` and `chta hop` find it. Of several starts, each post is
 /// reached from the nearest. Where no start is given, start and goal are those of the scenario; with DEM and a start, the terrain keys of
-/// --scenario (dem, mesh or chain, start, goal, intermediate points) are ignored.
+/// --scenario (dem, mesh or chain, start, goal, intermediate points) are ignored. For a scenario of a free route over a mesh: the fewest hops
+/// to contacts all over it.
 #[derive(Debug, ClapArgs)]
 #[command(
     after_help = "Example:\n  chta map data/terrain/lunar_rille.tif --start 60,60 --scenario data/scenarios/lunar_rille.toml"
 )]
 pub(crate) struct MapArgs {
-    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres; or a scenario (TOML) with terrain.dem; -: standard input
+    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres; or a scenario (TOML) with terrain.dem, or with terrain.mesh and route = "free"; -: standard input
     #[arg(value_name = "DEM|SCENARIO")]
     pub(crate) dem: PathBuf,
     /// Start of all paths, map coordinates in m; the nearest post is used; may be repeated: each post is reached from the nearest
@@ -173,7 +223,8 @@ pub(crate) struct MapArgs {
     /// Also find the posts from which a start can be reached again
     #[arg(long = "return")]
     pub(crate) back: bool,
-    /// Hops (GeoTIFF) to write: int16, -1 unreachable, -2 beyond --hops-max, -32768 no-data
+    /// Hops (GeoTIFF) to write: int16, -1 unreachable, -2 beyond --hops-max, -32768 no-data; over a mesh the contacts with their hops (CSV; -: to
+    /// standard output, in place of the answer)
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// Least effort (GeoTIFF) to write: float32, NaN where there is no path
@@ -216,6 +267,8 @@ pub(crate) struct MapArgs {
     /// Map picture (SVG or PNG) to write
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) view: ViewArgs,
     #[command(flatten)]
     pub(crate) size: SizeArgs,
     #[command(flatten)]

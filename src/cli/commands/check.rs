@@ -1,25 +1,22 @@
 //! `chta check`: does a path exist.
 
-use std::path::Path;
-
 use chta::{
-    chain::csv::{PairsFile, read_pairs_csv_file},
     report::{DocumentKind, check_text},
     study::{check, check_pairs},
 };
 
+use super::check_over_mesh;
 use crate::cli::{
     Answer, Failure,
     args::CheckArgs,
     effects::Purpose,
     hints::further_means,
     inputs,
-    load::load_journey,
+    load::{load_journey, read_pairs},
     output,
     progress::Progress,
     threads, unanswered,
     views::{Files, show},
-    wrong_thing::Role,
 };
 
 /// Checks one pair or many.
@@ -27,6 +24,9 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
     inputs::look_at_pairs(&args.journey.chain, &args.common, args.pairs.as_deref())?;
     // Set before the terrain is read, since reading starts the threads.
     threads::start(args.answer.threads)?;
+    if let Some(input) = check_over_mesh::loaded(args)? {
+        return check_over_mesh::run(args, &input);
+    }
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Check, &[])?;
     let pairs = args.pairs.as_deref().map(read_pairs).transpose()?;
     pairs.is_none().then(|| loaded.ends()).transpose()?;
@@ -49,11 +49,4 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
         _ => loaded.document(DocumentKind::CheckPairs, &warnings, checked.pairs_answer()),
     })?;
     Ok(Answer::of(checked.is_traversable()))
-}
-
-/// The pairs of a file; its warnings begin with its name.
-fn read_pairs(path: &Path) -> Result<PairsFile, Failure> {
-    let path = &inputs::open(path, Role::Pairs)?.file;
-    let PairsFile { pairs, warnings } = read_pairs_csv_file(path)?;
-    Ok(PairsFile { pairs, warnings: warnings.iter().map(|warning| format!("{}: {warning}", path.display())).collect() })
 }

@@ -4,9 +4,7 @@ use crate::cli::{
     Answer, Failure,
     args::CompareArgs,
     compared::compare_all,
-    inputs,
-    load::comparison_document,
-    output, threads,
+    inputs, output, threads,
     views::{Files, Table, Views},
 };
 
@@ -17,16 +15,16 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Answer, Failure> {
     let mut table = Table::by_extension(args.output.as_deref())?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     threads::start(args.answer.threads)?;
-    let (loaded, comparison) = compare_all(args)?;
+    let comparison = compare_all(args)?;
     let views = Views {
-        text: &|| comparison.answer.text(),
-        json: &|| comparison_document(&loaded, &comparison),
-        csv: &|out| comparison.answer.write_csv(out),
+        text: &|| comparison.answer().text(),
+        json: &|| comparison.document(),
+        csv: &|out| comparison.answer().write_csv(out),
     };
     let mut files = Files::default();
     files.table(&mut table, &views)?;
-    files.picture(plot, || Some(comparison.picture()))?;
+    files.picture(plot, || Some(comparison.picture(args.view.direction())))?;
     files.finish()?;
     views.show(args.answer.format, table.to_stdout)?;
-    Ok(Answer::of(!args.require_all || comparison.answer.is_traversable()))
+    Ok(Answer::of(!args.require_all || comparison.answer().is_traversable()))
 }

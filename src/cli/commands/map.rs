@@ -5,11 +5,13 @@ use chta::{
     study::map::PreparedMap,
 };
 
+use super::map_over_mesh;
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs},
+    effects::Purpose,
     inputs,
-    load::raster_files_of,
+    load::{EndOptions, load_mesh_scenario, raster_files_of},
     map_input::MapInput,
     map_outputs::MapOutputs,
     output,
@@ -25,6 +27,11 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let starts = (args.starts.as_deref(), Role::Starts);
     inputs::look_at(common.input_max_gib, &[(Some(&args.dem), Role::MapTarget), scenario, starts])?;
     threads::start(args.answer.threads)?;
+    let target = (args.dem.as_path(), Role::MapTarget);
+    if let Some(input) = load_mesh_scenario(target, common, (None, EndOptions::NONE), Purpose::MapMesh, &[])? {
+        return map_over_mesh::run(args, &input);
+    }
+    args.view.without_mesh()?;
     let input = MapInput::of(args)?;
     let question = input.question(args);
     let prepared = PreparedMap::new(&question).map_err(|error| input.failure(&error))?;

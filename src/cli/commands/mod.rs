@@ -1,17 +1,20 @@
-//! One file per command, and one for a plan over a mesh.
+//! One file per command, and one for a question over a mesh.
 
 pub(super) mod bodies;
 pub(super) mod check;
+mod check_over_mesh;
 pub(super) mod compare;
 pub(super) mod completions;
 pub(super) mod fan;
 pub(super) mod hop;
 pub(super) mod man;
 pub(super) mod map;
+mod map_over_mesh;
 pub(super) mod plan;
 mod plan_over_mesh;
 pub(super) mod require;
 pub(super) mod run;
+mod run_over_mesh;
 pub(super) mod schema;
 pub(super) mod simulate;
 pub(super) mod slice;

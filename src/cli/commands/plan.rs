@@ -40,7 +40,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
         loaded.check_on_map("--geojson")?;
     }
     // Outputs are opened before the search, which may take long.
-    let plot = output::begin_picture("--plot", args.plot.as_deref())?;
+    let plot = args.view.begin_picture(args.plot.as_deref())?;
     let plot_front = output::begin_picture("--plot-front", args.plot_front.as_deref())?;
     let geojson = GeoJsonFile::begin(args.geojson.as_deref(), loaded.case.prepared.projection.as_ref())?;
     let mut table = Table::begin(args.output.as_deref(), TableFormat::Csv)?;

@@ -45,7 +45,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
         csv: &|out| write_path_csv(&routed.answer.path, MapKnowledge::Metres, out),
     };
     let mut files = Files::default();
-    files.picture(plot, || Some(routed.picture(&input.scenario)))?;
+    files.picture(plot, || Some(routed.picture(&input.scenario, args.view.direction())))?;
     files.table(&mut table, &views)?;
     files.roadmap(roadmap_output, &routed)?;
     files.finish()?;

@@ -7,6 +7,7 @@ use chta::{
     study::{PlanOptions, SimulateOptions, Trials, plan},
 };
 
+use super::run_over_mesh;
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, RunArgs},
@@ -14,7 +15,7 @@ use crate::cli::{
     hints::further_means,
     inputs,
     landings::Listener,
-    load::load_scenario,
+    load::{EndOptions, load_mesh_scenario, load_scenario},
     output,
     progress::Progress,
     run_folder::RunFolder,
@@ -29,6 +30,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     inputs::look_at(args.input_max_gib, &[(Some(&args.scenario), Role::Scenario)])?;
     threads::start(args.answer.threads)?;
     let common = CommonArgs::of_scenarios(&args.set, args.accept_map_scale, args.input_max_gib, args.quiet);
+    let target = (args.scenario.as_path(), Role::Scenario);
+    if let Some(input) = load_mesh_scenario(target, &common, (None, EndOptions::NONE), Purpose::Run, &[])? {
+        return run_over_mesh::run(args, &input);
+    }
     let loaded = load_scenario(&args.scenario, &common, Purpose::Run)?;
     loaded.ends()?;
     output::check_folder(&args.output)?;

@@ -110,7 +110,8 @@ fn of_source(
         let own = own.ok_or_else(|| {
             let name = &source.name;
             Failure::message(format!(
-                "{name}: found no terrain.dem, expected one for a map: add it, or give the DEM, and the scenario with --scenario {name}"
+                "{name}: found no terrain.dem, expected one for a map: add it, or give the DEM, and the scenario with --scenario {name}, or over a \
+                 mesh give terrain.mesh with route = \"free\""
             ))
         })?;
         (ends, source.base.join(own))

@@ -1,15 +1,15 @@
 //! The mesh of a free route, and the scenario for it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use chta::{
-    report::DocumentKind,
+    report::{DocumentKind, InputFile},
     scenario::{Scenario, TerrainSource, scenario_document},
     study::{CaseRecord, checksums, scenario_files},
 };
 use serde::Serialize;
 
-use super::{EndOptions, OwnKey, apply_options, lacking_on, look_at_keys, read_source, relative_name, validated};
+use super::{EndOptions, OwnKey, Source, apply_options, lacking_on, look_at_keys, read_source, relative_name, validated};
 use crate::cli::{
     Failure,
     args::{CommonArgs, JourneyArgs, SearchArgs},
@@ -33,6 +33,16 @@ pub(crate) struct MeshPlanInput {
 }
 
 impl MeshPlanInput {
+    /// The files that are read, with their checksums.
+    pub(crate) fn inputs(&self) -> &[InputFile] {
+        &self.record.inputs
+    }
+
+    /// The head of its documents.
+    pub(crate) const fn record(&self) -> &CaseRecord {
+        &self.record
+    }
+
     /// An answer as one document, with its warnings.
     pub(crate) fn document<T: Serialize>(&self, kind: DocumentKind, warnings: &[String], answer: T) -> Result<String, Failure> {
         Ok(self.record.document(kind, warnings, answer).to_json()?)
@@ -47,15 +57,39 @@ pub(crate) fn load_mesh_plan(
     purpose: Purpose,
     own: &[OwnKey<'_>],
 ) -> Result<Option<MeshPlanInput>, Failure> {
-    let input = inputs::open(chain, Role::Chain)?;
+    load_mesh_scenario((chain, Role::Chain), common, (Some(search), EndOptions::of_path(*start, *goal)), purpose, own)
+}
+
+/// The keys of a scenario of hops over a mesh as it stands, with the options beside it; `None` for any other input.
+fn mesh_source(
+    (target, role): (&Path, Role),
+    common: &CommonArgs,
+    (search, ends): (Option<&SearchArgs>, EndOptions),
+) -> Result<Option<Source>, Failure> {
+    let input = inputs::open(target, role)?;
     if !input.is_scenario() || common.scenario.is_some() {
         return Ok(None);
     }
     let mut source = read_source(&input)?;
-    apply_options(&mut source.entries, common, Some(search), EndOptions::of_path(*start, *goal));
-    if source.entries.is_unreadable() || !source.entries.ask_for_free_mesh() {
-        return Ok(None);
-    }
+    apply_options(&mut source.entries, common, search, ends);
+    let is_over_mesh = !source.entries.is_unreadable() && source.entries.ask_for_free_mesh();
+    Ok(is_over_mesh.then_some(source))
+}
+
+/// Whether a file is a scenario of hops over a mesh as it stands.
+pub(crate) fn is_over_mesh(target: &Path, common: &CommonArgs) -> Result<bool, Failure> {
+    Ok(mesh_source((target, Role::Scenario), common, (None, EndOptions::NONE))?.is_some())
+}
+
+/// Loads the scenario of hops over a mesh as it stands, with the options beside it; `None` for any other input.
+pub(crate) fn load_mesh_scenario(
+    target: (&Path, Role),
+    common: &CommonArgs,
+    options: (Option<&SearchArgs>, EndOptions),
+    purpose: Purpose,
+    own: &[OwnKey<'_>],
+) -> Result<Option<MeshPlanInput>, Failure> {
+    let Some(mut source) = mesh_source(target, common, options)? else { return Ok(None) };
     look_at_keys(&mut source, true)?;
     for (option, table, key, value) in own {
         source.entries.set_by_option(option, table, key, value.clone());

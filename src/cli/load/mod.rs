@@ -5,6 +5,7 @@ mod ends;
 mod mesh_hop;
 mod mesh_plan;
 mod names;
+mod pairs;
 mod result;
 mod vary;
 
@@ -16,19 +17,18 @@ use std::{
 
 use chta::{
     chain::{Station, csv::read_chain_csv_file},
-    report::{Document, DocumentKind, InputFile},
+    report::{CompareAnswer, Document, DocumentKind, InputFile},
     scenario::{Entries, FileKind, LackingKey, Place, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource},
-    study::{
-        self, Case, CaseError, CaseRecord, Commands, Compared, Comparison, Overlays, PipelineError, checksums, scenario_files,
-    },
+    study::{self, Case, CaseError, CaseRecord, Commands, Overlays, PipelineError, checksums, scenario_files},
 };
 use serde::Serialize;
 
 pub(crate) use bare::{Bare, ScenarioEnds, load_bare, load_map};
 pub(crate) use ends::EndOptions;
 pub(crate) use mesh_hop::{MeshHopInput, load_mesh_hop};
-pub(crate) use mesh_plan::{MeshPlanInput, load_mesh_plan};
+pub(crate) use mesh_plan::{MeshPlanInput, is_over_mesh, load_mesh_plan, load_mesh_scenario};
 pub(crate) use names::relative_name;
+pub(crate) use pairs::read_pairs;
 pub(crate) use result::plan_to_fly;
 pub(crate) use vary::load_to_vary;
 
@@ -330,16 +330,19 @@ fn validate_and_prepare(
 }
 
 /// Several scenarios side by side as one document, with all of them as used.
-pub(crate) fn comparison_document(loaded: &[Loaded], comparison: &Comparison) -> Result<String, Failure> {
-    let scenarios = loaded.iter().map(|one| one.record.scenario.clone()).collect();
+pub(crate) fn comparison_document(
+    records: &[&CaseRecord],
+    warnings: Vec<String>,
+    answer: &CompareAnswer,
+) -> Result<String, Failure> {
+    let scenarios = records.iter().map(|record| record.scenario.clone()).collect();
     let mut inputs: Vec<InputFile> = Vec::new();
-    for input in loaded.iter().flat_map(|one| &one.record.inputs) {
+    for input in records.iter().flat_map(|record| &record.inputs) {
         if !inputs.contains(input) {
             inputs.push(input.clone());
         }
     }
-    let warnings = comparison.compared.iter().flat_map(Compared::warnings).collect();
-    let document = Document::new(DocumentKind::Compare, serde_json::Value::Array(scenarios), inputs, warnings, &comparison.answer);
+    let document = Document::new(DocumentKind::Compare, serde_json::Value::Array(scenarios), inputs, warnings, answer);
     Ok(document.to_json()?)
 }
 

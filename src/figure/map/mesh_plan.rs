@@ -2,6 +2,7 @@
 
 use super::{
     super::{
+        mesh_paint::Paint,
         mesh_raster::{Seen, View, Window},
         palette::{SMALL_MM, WHITE},
         picture::paragraph,
@@ -9,7 +10,7 @@ use super::{
         ticks::{Ticks, short},
     },
     data::GoalMark,
-    panel::MapPanel,
+    panel::{MapPanel, goal_symbol},
 };
 use crate::{
     quantity::MapPoint,
@@ -35,6 +36,10 @@ pub(in super::super) struct MeshPlan<'a> {
     pub(in super::super) paths: Vec<(Vec<MapPoint>, Pen)>,
     pub(in super::super) start: MapPoint,
     pub(in super::super) goal: MapPoint,
+    /// The hops to the goal; `None`: not reached.
+    pub(in super::super) goal_hops: Option<u64>,
+    /// The colours of its places.
+    pub(in super::super) paint: Option<&'a Paint>,
 }
 
 /// Draws it below a height of a sheet; returns where it ends.
@@ -47,6 +52,9 @@ pub(in super::super) fn draw_mesh_plan(sheet: &mut Sheet, plan: &MeshPlan<'_>, t
     let steps = Ticks::round(plan.low_z_m, plan.cut_z_m, CONTOURS).values;
     let step_m = steps.windows(2).map(|pair| pair[1] - pair[0]).next().unwrap_or(plan.cut_z_m - plan.low_z_m);
     seen.contours(step_m);
+    if let Some(paint) = plan.paint {
+        seen.paint(plan.mesh, &View::plan(), paint);
+    }
     let end_mm = map.draw(sheet, seen.into_pixels());
     for (path, pen) in &plan.paths {
         let points: Vec<_> = path.iter().map(|at| map.place(*at)).collect();
@@ -57,8 +65,14 @@ pub(in super::super) fn draw_mesh_plan(sheet: &mut Sheet, plan: &MeshPlan<'_>, t
         sheet.line(points, *pen);
     }
     let landings: Vec<Vec<MapPoint>> = plan.paths.iter().map(|(path, _)| path.clone()).collect();
-    let hops = landings.first().map(|path| path.len().saturating_sub(1) as u64);
-    let mut taken = map.ends(sheet, &[plan.start], &[GoalMark { at: plan.goal, hops }], &landings);
+    let goals = [GoalMark { at: plan.goal, hops: plan.goal_hops }];
+    let several = landings.len() > 1;
+    let mut taken = map.ends(sheet, &[plan.start], if several { &[] } else { &goals }, &landings);
+    if several {
+        // Each path has hops of its own.
+        goal_symbol(sheet, map.place(plan.goal));
+        map.name(sheet, plan.goal, "goal", &mut taken);
+    }
     if let [path] = &landings[..] {
         let between = path.get(1..path.len().saturating_sub(1)).unwrap_or_default();
         let every = between.len().div_ceil(MOST_NUMBERED).max(1);

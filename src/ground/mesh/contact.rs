@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 
 use super::{MeshGround, hold::Hold};
-use crate::quantity::FacetId;
+use crate::{quantity::FacetId, world::Contact};
 
 /// A facet at a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,6 +116,11 @@ impl MeshContact {
     #[inline]
     pub(super) fn facet(&self, id: FacetId) -> Option<&MeshContactFacet> {
         self.facets.iter().find(|facet| facet.id == id)
+    }
+
+    /// Whether every take-off, or every landing, is refused there, whatever the hop: a facet is too steep to rest on, or kept out.
+    pub fn refuses(&self, kind: Contact) -> bool {
+        self.facets.iter().any(|facet| facet.holds[kind as usize] == Hold::Refused)
     }
 
     /// Whether a facet meets the point.

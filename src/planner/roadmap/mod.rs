@@ -26,4 +26,4 @@ pub use route::{RoadmapGap, RoadmapPath, RoadmapQuestion, RoadmapRoute};
 pub use sample::{ContactSampler, DrawnContacts, NothingWithin, SpaceBounds};
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

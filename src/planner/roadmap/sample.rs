@@ -142,6 +142,11 @@ impl<'g> ContactSampler<'g> {
         self.facets.len()
     }
 
+    /// Their area, m^2.
+    pub fn area_m2(&self) -> f64 {
+        self.areas_m2.last().copied().unwrap_or(0.0)
+    }
+
     /// How many of them have had their turn.
     pub const fn turned(&self) -> usize {
         self.turned
@@ -244,7 +249,7 @@ impl<'g> ContactSampler<'g> {
 
     /// A point of the facets, each part of the same area with the same probability.
     fn by_area(&mut self) -> Point3<f64> {
-        let whole_m2 = self.areas_m2.last().copied().unwrap_or(0.0);
+        let whole_m2 = self.area_m2();
         let at_m2 = whole_m2 * self.source.random::<f64>();
         let facet = self.areas_m2.partition_point(|sum_m2| *sum_m2 <= at_m2).min(self.facets.len() - 1);
         let [a, b, c] = self.ground.tree().corners(self.facets[facet]);

@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// A mesh of quadrilaterals, each by its corners, counter-clockwise seen from outside.
-fn mesh_of(quads: &[[[f64; 3]; 4]]) -> Mesh {
+pub(crate) fn mesh_of(quads: &[[[f64; 3]; 4]]) -> Mesh {
     let vertices = quads.iter().flatten().map(|corner| Point3::from(*corner)).collect();
     let triangles = (0..u32::try_from(quads.len()).unwrap()).flat_map(|quad| {
         let at = 4 * quad;
@@ -42,7 +42,7 @@ fn cuboid([x0, y0, z0]: [f64; 3], [x1, y1, z1]: [f64; 3]) -> [[[f64; 3]; 4]; 6] 
 }
 
 /// A floor with boxes on it, some under others.
-fn boxes(draw: &mut Draw, count: usize) -> Mesh {
+pub(crate) fn boxes(draw: &mut Draw, count: usize) -> Mesh {
     let mut quads = vec![[[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 8.0, 0.0], [0.0, 8.0, 0.0]]];
     for _ in 0..count {
         let low = [draw.uniform(0.5, 6.0), draw.uniform(0.5, 6.0), draw.uniform(-0.5, 1.5)];
@@ -52,7 +52,7 @@ fn boxes(draw: &mut Draw, count: usize) -> Mesh {
     mesh_of(&quads)
 }
 
-fn ground(mesh: Mesh, speed_m_s: f64, friction: f64, gravity_m_s2: f64) -> MeshGround {
+pub(crate) fn ground(mesh: Mesh, speed_m_s: f64, friction: f64, gravity_m_s2: f64) -> MeshGround {
     let surface =
         SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(friction).unwrap())), rest: RestSlope::Unlimited };
     let hopper = Hopper::with_speeds(speed_m_s, speed_m_s).unwrap();
@@ -65,7 +65,7 @@ fn question<'a>(objective: &'a Objective, budgets: &'a Budgets) -> RoadmapQuesti
 }
 
 /// Start, goal and so many contacts more.
-fn contacts(ground: &MeshGround, count: usize, seed: u64) -> Vec<MeshContact> {
+pub(crate) fn contacts(ground: &MeshGround, count: usize, seed: u64) -> Vec<MeshContact> {
     let ends = [[0.2, 0.3, 0.0], [7.7, 7.6, 0.0]].map(|at| ground.contact(Point3::from(at)).unwrap());
     let mut sampler = ContactSampler::new(ground, None, 0.0, seed).unwrap();
     ends.into_iter().chain(sampler.all_over(count, &|_| true)).collect()

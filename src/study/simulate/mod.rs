@@ -9,6 +9,8 @@ use std::{ops::Range, path::PathBuf, sync::Arc};
 
 use advice::advice;
 pub(super) use flyer::Flyer;
+#[cfg(feature = "plot")]
+pub(super) use pictures::trials_picture;
 
 use super::{CaseError, Planned, TrialGround};
 use crate::{

@@ -21,12 +21,7 @@ impl Simulated {
     /// [`FigureError`].
     pub fn picture(&self) -> Option<Result<Picture, FigureError>> {
         let first = self.summaries.first()?;
-        Some(draw_simulation(&SimulationFigure {
-            caption: caption(&self.planned.case.scenario, self.summaries.iter()),
-            flown: bundle(self, first),
-            errors: self.summaries.iter().map(boxes).collect(),
-            outcomes: self.summaries.iter().map(bars).collect(),
-        }))
+        Some(trials_picture(&self.planned.case.scenario, &self.summaries, bundle(self, first)))
     }
 
     /// The landings on the map, under the first policy; `None` without a map or if nothing was flown.
@@ -41,6 +36,23 @@ impl Simulated {
         let caption = caption(&self.planned.case.scenario, std::iter::once(summary));
         Some(draw_landing_map(&LandingMapFigure { caption, dem, path, clouds }))
     }
+}
+
+/// The sheet with all panels of trials; without `flown` none of their flights.
+///
+/// # Errors
+/// [`FigureError`].
+pub(in crate::study) fn trials_picture(
+    scenario: &Scenario,
+    summaries: &[Summary],
+    flown: Option<FlownFigure>,
+) -> Result<Picture, FigureError> {
+    draw_simulation(&SimulationFigure {
+        caption: caption(scenario, summaries.iter()),
+        flown,
+        errors: summaries.iter().map(boxes).collect(),
+        outcomes: summaries.iter().map(bars).collect(),
+    })
 }
 
 /// The caption: what was flown, under which errors, and the success rates.

@@ -20,7 +20,6 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
     let refused = [
         ("--experiment", args.experiment.is_some(), "is flown along a profile"),
         ("--output", args.output.is_some(), "writes landings along a profile"),
-        ("--plot", args.plot.is_some(), "draws trials along a profile (chta plan draws the path over a mesh)"),
         ("--plot-map", args.plot_map.is_some(), "draws landings on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
         ("--plan-anew", args.plan_anew, "plans the scenario of a result anew"),
@@ -29,6 +28,7 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
         let message = format!("{option}: found this option, which {what}, and this terrain is a mesh: leave the option out");
         return Err(Failure::message(message));
     }
+    let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let tally = args.tally.as_deref().map(Pending::begin).transpose()?;
     let about = |error: &dyn std::error::Error| Failure::message(format!("{}: {error}", input.mesh.display()));
     let progress = Progress::new(args.common.quiet);
@@ -38,6 +38,7 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
         simulate_over_mesh(routed, &input.scenario, &args.options(), &mut (), &progress).map_err(|error| about(&error))?;
     output::warn_all(args.common.quiet, &simulated.warnings);
     let mut files = Files::default();
+    files.picture(plot, || simulated.picture(&input.scenario))?;
     files.json(tally, simulated.tallies.first())?;
     files.finish()?;
     let answer = &simulated.answer;

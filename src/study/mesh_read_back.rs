@@ -1,0 +1,96 @@
+//! The path over a mesh that a result holds, flown again as it stands.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::{
+    MeshRouteError, ReadBackError,
+    mesh_ends::{MeshEnds, mesh_ends},
+    read_back::{commanded, key, same_inputs},
+};
+use crate::{
+    ground::{ContactPoint, MeshPosition},
+    path::{Hop, HopPath, execute_over_mesh},
+    quantity::MapPoint,
+    report::{DocumentKind, HopRecord, InputFile, MeshCheckAnswer, MeshContactRecord, ViolationRecord},
+    scenario::Scenario,
+};
+
+/// The kinds of answers that hold a path over a mesh.
+const WITH_PATH: [DocumentKind; 3] = [DocumentKind::PlanMesh, DocumentKind::RunMesh, DocumentKind::SimulateMesh];
+
+/// Why the path of a result is not flown.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshReadBackError {
+    /// The mesh, or its ends.
+    #[error(transparent)]
+    Mesh(#[from] MeshRouteError),
+    /// The result.
+    #[error(transparent)]
+    Result(#[from] ReadBackError),
+    /// A result without a path.
+    #[error("found a result without a path, expected one with hops to fly again: {0} states none")]
+    NoPath(String),
+}
+
+/// The path of a result, flown again.
+#[derive(Clone, Debug)]
+pub struct MeshChecked {
+    /// The path.
+    pub path: HopPath,
+    /// The answer as plain data.
+    pub answer: MeshCheckAnswer,
+    /// Warnings about the mesh and the path.
+    pub warnings: Vec<String>,
+}
+
+/// Flies the path of a result over the mesh of its scenario again by direct simulation, and names every limit that it breaks. Nothing is
+/// searched.
+///
+/// `document`: a result of a plan, a run or trials over a mesh; `inputs`: the files of the scenario with their checksums, which have to be
+/// those of the result.
+///
+/// # Errors
+/// [`MeshReadBackError`]. That the path breaks a limit is an answer.
+pub fn check_over_mesh(
+    (scenario, base): (&Scenario, &Path),
+    document: &Value,
+    inputs: &[InputFile],
+) -> Result<MeshChecked, MeshReadBackError> {
+    let schema = document["schema"].as_str().unwrap_or("no schema").to_owned();
+    if !DocumentKind::of_schema(&schema).is_some_and(|kind| WITH_PATH.contains(&kind)) {
+        return Err(ReadBackError::NoPath { found: schema }.into());
+    }
+    same_inputs(&key::<Vec<InputFile>>(document, "inputs")?, inputs)?;
+    let rows: Vec<HopRecord> = key(document, "path")?;
+    let Some(stated) = key::<Option<u64>>(document, "hops")? else { return Err(MeshReadBackError::NoPath(schema)) };
+    if stated != rows.len() as u64 {
+        return Err(ReadBackError::Hops { stated, listed: rows.len() }.into());
+    }
+    let MeshEnds { ground, scale, given_m, surface, stood, stand_off_m, mut warnings } = mesh_ends(scenario, base)?;
+    let hops = rows.iter().map(hop_of).collect::<Result<_, _>>()?;
+    let path = HopPath::of_hops(hops, ground.envelope().hopper());
+    // Start and goal that are one contact need no hop, wherever they were asked for within its resolution.
+    let [start, mut goal] = [0, 1].map(|i| MeshPosition::from(&stood[i]));
+    if path.hops.is_empty() && (goal.point_m - start.point_m).norm() <= ground.tree().resolution_m() {
+        goal = start;
+    }
+    let execution = execute_over_mesh(&ground.clone().standing_off(stand_off_m), &path, Some((start, goal)));
+    warnings.extend(scenario.path_warnings(&path));
+    let [start, goal] = [0, 1].map(|i| MeshContactRecord::new(&ground, &surface[i], given_m[i].coords.into()));
+    let violations = execution.violations.iter().map(ViolationRecord::from).collect::<Vec<_>>();
+    let answer = MeshCheckAnswer { mesh_scale: scale, start, goal, hops: rows.len(), holds: execution.passes(), violations };
+    Ok(MeshChecked { path, answer, warnings })
+}
+
+/// A hop from contact to contact, as the result states it.
+fn hop_of(row: &HopRecord) -> Result<Hop, ReadBackError> {
+    let map = row.map.as_ref().ok_or(ReadBackError::NoPlaces { hop: row.hop })?;
+    let takeoff_at = MapPoint::new(map.takeoff_map_x_m, map.takeoff_map_y_m);
+    let landing_at = MapPoint::new(map.landing_map_x_m, map.landing_map_y_m);
+    let takeoff = ContactPoint::on_map(row.takeoff_x_m, takeoff_at, row.takeoff_z_m);
+    let landing = ContactPoint::on_map(row.landing_x_m, landing_at, row.landing_z_m);
+    Ok(commanded(row, [takeoff, landing], None))
+}
