@@ -262,6 +262,7 @@ fn roadmap_lines(sheet: &mut Sheet, roadmap: &RoadmapRecord) {
             RoadmapEnd::Time => "it ended by its time (search.time_max_s): a faster machine may find a better path",
             RoadmapEnd::Gain => "it ended when the best path gained less than 1 % in two rounds",
             RoadmapEnd::Exhausted => "it ended when no more contacts of use were found",
+            RoadmapEnd::Joined => "it ended when start and goal were joined, as the method has it: more contacts may give a shorter path",
         }
     ));
 }

@@ -32,11 +32,13 @@ pub enum RoadmapEnd {
     Gain,
     /// No more contacts were found that could be of use.
     Exhausted,
+    /// Its start leads to its goal, which is all that one that grows contact by contact waits for.
+    Joined,
 }
 
 impl RoadmapEnd {
     /// All reasons.
-    pub const ALL: [Self; 4] = [Self::Contacts, Self::Time, Self::Gain, Self::Exhausted];
+    pub const ALL: [Self; 5] = [Self::Contacts, Self::Time, Self::Gain, Self::Exhausted, Self::Joined];
 
     /// The name in results.
     pub const fn name(self) -> &'static str {
@@ -45,6 +47,7 @@ impl RoadmapEnd {
             Self::Time => "time",
             Self::Gain => "gain",
             Self::Exhausted => "exhausted",
+            Self::Joined => "joined",
         }
     }
 }
@@ -160,7 +163,7 @@ pub fn grow_roadmap(
 }
 
 impl GrownRoadmap {
-    fn record(&mut self) {
+    pub(super) fn record(&mut self) {
         self.history.push(RoadmapRound {
             contacts: self.roadmap.contact_count(),
             windows: self.roadmap.window_count(),

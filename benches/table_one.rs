@@ -1,0 +1,196 @@
+//! Table I of Campana and Laumond 2016, their other two scenes, and how often both tests of a hop join start and goal.
+//!
+//! `cargo bench --bench table_one --profile release [-- SEEDS]`. It prints the tables of `docs/validation.md`. The meshes are read from a folder
+//! beside the repository (`tests/library` names it); without it the slot alone is measured. One thread; times are wall-clock times of the
+//! growth and the search, with contacts drawn, without reading the mesh.
+
+#![allow(clippy::expect_used, reason = "a table that cannot set its scene should stop")]
+#![allow(clippy::print_stdout, reason = "it prints tables")]
+#![allow(clippy::cast_precision_loss, reason = "counts far below 2^53")]
+
+use std::{path::Path, time::Instant};
+
+use chta::{
+    ballistics::TakeoffChoice,
+    ground::{MeshContact, MeshGround},
+    planner::{
+        Amount, Budgets, LabelCap, Objective, SearchedCommands,
+        roadmap::{ContactSampler, JoinTest, OneByOne, PROBE_STAND_OFF_M, RoadmapQuestion, SpaceBounds, grow_one_by_one},
+    },
+    terrain::{Mesh, MeshTree, read_mesh},
+    world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
+};
+use nalgebra::Point3;
+
+/// Seeds of every problem: as many runs as the paper's.
+const SEEDS: u64 = 40;
+
+/// A problem stops with so many contacts.
+const CONTACTS_MAX: usize = 40_000;
+
+/// A scene: its file, its bounds, its ends.
+struct Scene {
+    file: &'static str,
+    bounds: [[f64; 3]; 2],
+    ends: [[f64; 3]; 2],
+}
+
+const JUMP: Scene =
+    Scene { file: "scene_jump10.stl", bounds: [[-6.0, -2.5, 0.0], [6.8, 3.2, 8.0]], ends: [[6.2, 0.5, 0.5], [-4.4, -1.5, 6.5]] };
+const CAVE: Scene = Scene {
+    file: "cave_mono_short_1.stl",
+    bounds: [[-2.6, -3.0, -2.5], [2.6, 4.2, 4.0]],
+    ends: [[-0.3, 3.65, -0.25], [-0.18, -2.2, -0.4]],
+};
+const WINDOWS: Scene =
+    Scene { file: "envir3d_1.stl", bounds: [[-5.0, -5.0, -1.0], [5.0, 5.0, 7.0]], ends: [[-3.8, 2.4, 1.2], [3.5, -3.3, 0.4]] };
+
+/// A problem: its scene, friction, greatest speed, and what Table I states of it.
+struct Problem {
+    scene: &'static Scene,
+    friction: f64,
+    speed_m_s: f64,
+    paper: &'static str,
+}
+
+const PROBLEMS: [Problem; 8] = [
+    Problem { scene: &JUMP, friction: 0.5, speed_m_s: 6.5, paper: "9.89 s, 1995, 3270, 39.9" },
+    Problem { scene: &JUMP, friction: 0.5, speed_m_s: 7.0, paper: "9.99 s, 1835, 4002, 37.4" },
+    Problem { scene: &JUMP, friction: 1.2, speed_m_s: 6.5, paper: "1.04 s, 282, 601, 28.1" },
+    Problem { scene: &JUMP, friction: 1.2, speed_m_s: 7.0, paper: "0.909 s, 237, 540, 27.0" },
+    Problem { scene: &CAVE, friction: 1.2, speed_m_s: 4.5, paper: "-" },
+    Problem { scene: &CAVE, friction: 0.5, speed_m_s: 4.5, paper: "-" },
+    Problem { scene: &WINDOWS, friction: 1.2, speed_m_s: 6.8, paper: "-" },
+    Problem { scene: &WINDOWS, friction: 0.5, speed_m_s: 5.3, paper: "-" },
+];
+
+/// The pads and the slot of `docs/validation.md`: none of the sampled angles of any pair passes.
+const SLOT: Scene = Scene { file: "", bounds: [[-0.1, -0.1, -0.1], [2.1, 0.1, 0.1]], ends: [[0.0, 0.01, 0.0], [2.0, 0.01, 0.0]] };
+
+/// The numbers of contacts within which both tests are compared.
+const WITHIN: [usize; 8] = [50, 100, 200, 400, 800, 1600, 3200, 6400];
+
+fn folder() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/mesh"))
+}
+
+/// The ground of a mesh with one friction and one greatest speed.
+fn ground(mesh: Mesh, friction: f64, speed_m_s: f64) -> MeshGround {
+    let hopper = Hopper::with_speeds(speed_m_s, speed_m_s).expect("a hopper");
+    let grip = Some(Grip::Friction(FrictionCone::new(friction).expect("a friction")));
+    let surface = SurfaceProperties { grip, rest: RestSlope::Unlimited };
+    MeshGround::new(MeshTree::new(mesh), &hopper, Gravity::new(9.81).expect("a gravity"), &surface).expect("a ground")
+}
+
+/// Two pads, and between them a wall with a slot.
+fn slot() -> MeshGround {
+    let pad = |x: f64| [[x - 0.05, -0.05, 0.0], [x + 0.05, -0.05, 0.0], [x + 0.05, 0.05, 0.0], [x - 0.05, 0.05, 0.0]];
+    let wall = |low: f64, high: f64| [[1.0, -9.0, low], [1.0, 9.0, low], [1.0, 9.0, high], [1.0, -9.0, high]];
+    let quads = [pad(0.0), pad(2.0), wall(-9.0, 1.21), wall(1.48, 9.0)];
+    let vertices = quads.iter().flatten().map(|corner| Point3::from(*corner)).collect();
+    let triangles = (0..4).flat_map(|quad| [[4 * quad, 4 * quad + 1, 4 * quad + 2], [4 * quad, 4 * quad + 2, 4 * quad + 3]]);
+    ground(Mesh::new(vertices, triangles.collect()).expect("a mesh"), 1.2, 6.5)
+}
+
+/// Means over all runs of a problem, and how many contacts each took.
+#[derive(Default)]
+struct Means {
+    runs: f64,
+    ms: f64,
+    nodes: f64,
+    hops: f64,
+    tried: f64,
+    first_arcs_refused: f64,
+    refused: f64,
+    grazes: f64,
+    length_m: f64,
+    /// Contacts of the runs that joined start and goal.
+    contacts: Vec<usize>,
+}
+
+impl Means {
+    /// How many of the runs joined start and goal within a number of contacts.
+    fn joined_within(&self, contacts: usize) -> usize {
+        self.contacts.iter().filter(|taken| **taken <= contacts).count()
+    }
+}
+
+fn measured(ground: &MeshGround, scene: &Scene, test: JoinTest, (seeds, contacts_max): (u64, usize)) -> Means {
+    let bounds = SpaceBounds { min: scene.bounds[0].into(), max: scene.bounds[1].into() };
+    let end = |at: [f64; 3]| -> MeshContact {
+        let contact = ground.contact(at.into()).expect("an end on the mesh");
+        ground.stood_off(&contact, PROBE_STAND_OFF_M).expect("room to stand off")
+    };
+    let objective = Objective::of(Amount::ArcLength);
+    let question = RoadmapQuestion {
+        objective: &objective,
+        budgets: &Budgets::NONE,
+        commands: SearchedCommands::Chosen,
+        takeoff: TakeoffChoice::LeastTime,
+        cap: LabelCap::default(),
+    };
+    let scheme = OneByOne { test, height_max_m: Some(bounds.max.z), contacts_max, time_max: None };
+    let mut means = Means { runs: seeds as f64, ..Means::default() };
+    let share = 1.0 / seeds as f64;
+    for seed in 0..seeds {
+        let mut sampler = ContactSampler::new(ground, Some(bounds), PROBE_STAND_OFF_M, seed).expect("facets within the bounds");
+        let began = Instant::now();
+        let (grown, counts) =
+            grow_one_by_one(ground, scene.ends.map(end), &mut sampler, &question, scheme, &()).expect("not cancelled");
+        means.ms += share * 1e3 * began.elapsed().as_secs_f64();
+        means.nodes += share * grown.roadmap.contact_count() as f64;
+        means.hops += share * 0.5 * grown.roadmap.window_count() as f64;
+        means.tried += share * counts.tried as f64;
+        means.first_arcs_refused += share * counts.first_arcs_refused as f64;
+        means.refused += share * counts.refused as f64;
+        means.grazes += share * counts.grazes as f64;
+        if let Some(path) = &grown.route.path {
+            means.length_m += path.totals.of(Amount::ArcLength);
+            means.contacts.push(grown.roadmap.contact_count());
+        }
+    }
+    means.length_m /= means.contacts.len() as f64;
+    means
+}
+
+fn main() {
+    let seeds = std::env::args().skip(1).find_map(|text| text.parse().ok()).unwrap_or(SEEDS);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    pool.install(|| tables(seeds));
+}
+
+fn tables(seeds: u64) {
+    println!("means of {seeds} seeds; hops: undirected, by windows; collisions: first arcs refused / hops refused");
+    println!("| scene, mu/V | paper: s, nodes, collisions, m | prm: ms, nodes, hops, collisions, m | exact: ms, nodes, hops, collisions, m | grazes |");
+    println!("|---|---|---|---|---|");
+    let mut joined = Vec::new();
+    for problem in &PROBLEMS {
+        let Problem { scene, friction, speed_m_s, paper } = problem;
+        let path = folder().join(scene.file);
+        let Ok(file) = read_mesh(&path, 1.0) else {
+            println!("skipped: {} is absent", path.display());
+            continue;
+        };
+        let ground = ground(file.mesh, *friction, *speed_m_s);
+        let name = format!("{}, {friction}/{speed_m_s}", scene.file.trim_end_matches(".stl"));
+        let [sampled, exact] =
+            [JoinTest::SampledAngles, JoinTest::ExactWindows].map(|test| measured(&ground, scene, test, (seeds, CONTACTS_MAX)));
+        let cells = |means: &Means| {
+            let Means { ms, nodes, hops, first_arcs_refused, refused, length_m, .. } = means;
+            format!("{ms:.1}, {nodes:.0}, {hops:.0}, {first_arcs_refused:.0} / {refused:.0}, {length_m:.1}")
+        };
+        println!("| {name} | {paper} | {} | {} | {:.2} |", cells(&sampled), cells(&exact), sampled.grazes);
+        joined.push((name, sampled, exact));
+    }
+    let ground = slot();
+    let [sampled, exact] = [JoinTest::SampledAngles, JoinTest::ExactWindows]
+        .map(|test| measured(&ground, &SLOT, test, (seeds, *WITHIN.last().expect("some") / 4)));
+    joined.push(("slot, 1.2/6.5".to_owned(), sampled, exact));
+    println!("\nruns of {seeds} that joined start and goal within so many contacts: prm / exact");
+    println!("| scene, mu/V | {} |", WITHIN.map(|contacts| contacts.to_string()).join(" | "));
+    println!("|---|{}", "---|".repeat(WITHIN.len()));
+    for (name, sampled, exact) in &joined {
+        let cells = WITHIN.map(|contacts| format!("{} / {}", sampled.joined_within(contacts), exact.joined_within(contacts)));
+        println!("| {name} | {} |", cells.join(" | "));
+    }
+}
