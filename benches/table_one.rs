@@ -32,18 +32,29 @@ const CONTACTS_MAX: usize = 40_000;
 struct Scene {
     file: &'static str,
     bounds: [[f64; 3]; 2],
+    /// The greatest height of a flight, m.
+    height_max_m: Option<f64>,
     ends: [[f64; 3]; 2],
 }
 
-const JUMP: Scene =
-    Scene { file: "scene_jump10.stl", bounds: [[-6.0, -2.5, 0.0], [6.8, 3.2, 8.0]], ends: [[6.2, 0.5, 0.5], [-4.4, -1.5, 6.5]] };
+const JUMP: Scene = Scene {
+    file: "scene_jump10.stl",
+    bounds: [[-6.0, -2.5, 0.0], [6.8, 3.2, 8.0]],
+    height_max_m: Some(8.0),
+    ends: [[6.2, 0.5, 0.5], [-4.4, -1.5, 6.5]],
+};
 const CAVE: Scene = Scene {
     file: "cave_mono_short_1.stl",
     bounds: [[-2.6, -3.0, -2.5], [2.6, 4.2, 4.0]],
+    height_max_m: Some(4.0),
     ends: [[-0.3, 3.65, -0.25], [-0.18, -2.2, -0.4]],
 };
-const WINDOWS: Scene =
-    Scene { file: "envir3d_1.stl", bounds: [[-5.0, -5.0, -1.0], [5.0, 5.0, 7.0]], ends: [[-3.8, 2.4, 1.2], [3.5, -3.3, 0.4]] };
+const WINDOWS: Scene = Scene {
+    file: "envir3d_1.stl",
+    bounds: [[-5.0, -5.0, -1.0], [5.0, 5.0, 7.0]],
+    height_max_m: Some(7.0),
+    ends: [[-3.8, 2.4, 1.2], [3.5, -3.3, 0.4]],
+};
 
 /// A problem: its scene, friction, greatest speed, and what Table I states of it.
 struct Problem {
@@ -65,7 +76,12 @@ const PROBLEMS: [Problem; 8] = [
 ];
 
 /// The pads and the slot of `docs/validation.md`: none of the sampled angles of any pair passes.
-const SLOT: Scene = Scene { file: "", bounds: [[-0.1, -0.1, -0.1], [2.1, 0.1, 0.1]], ends: [[0.0, 0.01, 0.0], [2.0, 0.01, 0.0]] };
+const SLOT: Scene = Scene {
+    file: "",
+    bounds: [[-0.1, -0.1, -0.1], [2.1, 0.1, 0.1]],
+    height_max_m: None,
+    ends: [[0.0, 0.01, 0.0], [2.0, 0.01, 0.0]],
+};
 
 /// The numbers of contacts within which both tests are compared.
 const WITHIN: [usize; 8] = [50, 100, 200, 400, 800, 1600, 3200, 6400];
@@ -92,18 +108,46 @@ fn slot() -> MeshGround {
     ground(Mesh::new(vertices, triangles.collect()).expect("a mesh"), 1.2, 6.5)
 }
 
+/// The mean of a number over runs, and its standard error.
+#[derive(Default)]
+struct Mean {
+    count: f64,
+    sum: f64,
+    sum_of_squares: f64,
+}
+
+impl Mean {
+    fn add(&mut self, number: f64) {
+        self.count += 1.0;
+        self.sum += number;
+        self.sum_of_squares += number * number;
+    }
+
+    fn error(&self) -> f64 {
+        let mean = self.sum / self.count;
+        ((self.sum_of_squares / self.count - mean * mean).max(0.0) / (self.count - 1.0).max(1.0)).sqrt()
+    }
+}
+
+impl std::fmt::Display for Mean {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let digits = f.precision().unwrap_or(0);
+        write!(f, "{:.digits$} ± {:.digits$}", self.sum / self.count, self.error())
+    }
+}
+
 /// Means over all runs of a problem, and how many contacts each took.
 #[derive(Default)]
 struct Means {
-    runs: f64,
-    ms: f64,
-    nodes: f64,
-    hops: f64,
-    tried: f64,
-    first_arcs_refused: f64,
-    refused: f64,
-    grazes: f64,
-    length_m: f64,
+    ms: Mean,
+    nodes: Mean,
+    hops: Mean,
+    first_arcs_refused: Mean,
+    refused: Mean,
+    too_high: Mean,
+    narrow: Mean,
+    grazes: Mean,
+    length_m: Mean,
     /// Contacts of the runs that joined start and goal.
     contacts: Vec<usize>,
 }
@@ -129,27 +173,26 @@ fn measured(ground: &MeshGround, scene: &Scene, test: JoinTest, (seeds, contacts
         takeoff: TakeoffChoice::LeastTime,
         cap: LabelCap::default(),
     };
-    let scheme = OneByOne { test, height_max_m: Some(bounds.max.z), contacts_max, time_max: None };
-    let mut means = Means { runs: seeds as f64, ..Means::default() };
-    let share = 1.0 / seeds as f64;
+    let scheme = OneByOne { test, height_max_m: scene.height_max_m, contacts_max, time_max: None };
+    let mut means = Means::default();
     for seed in 0..seeds {
         let mut sampler = ContactSampler::new(ground, Some(bounds), PROBE_STAND_OFF_M, seed).expect("facets within the bounds");
         let began = Instant::now();
-        let (grown, counts) =
-            grow_one_by_one(ground, scene.ends.map(end), &mut sampler, &question, scheme, &()).expect("not cancelled");
-        means.ms += share * 1e3 * began.elapsed().as_secs_f64();
-        means.nodes += share * grown.roadmap.contact_count() as f64;
-        means.hops += share * 0.5 * grown.roadmap.window_count() as f64;
-        means.tried += share * counts.tried as f64;
-        means.first_arcs_refused += share * counts.first_arcs_refused as f64;
-        means.refused += share * counts.refused as f64;
-        means.grazes += share * counts.grazes as f64;
+        let grown = grow_one_by_one(ground, scene.ends.map(end), &mut sampler, &question, scheme, &());
+        let (grown, counts) = grown.expect("not cancelled");
+        means.ms.add(1e3 * began.elapsed().as_secs_f64());
+        means.nodes.add(grown.roadmap.contact_count() as f64);
+        means.hops.add(0.5 * grown.roadmap.window_count() as f64);
+        means.first_arcs_refused.add(counts.first_arcs_refused as f64);
+        means.refused.add(counts.refused as f64);
+        means.too_high.add(counts.too_high as f64);
+        means.narrow.add(counts.narrow as f64);
+        means.grazes.add(counts.grazes as f64);
         if let Some(path) = &grown.route.path {
-            means.length_m += path.totals.of(Amount::ArcLength);
+            means.length_m.add(path.totals.of(Amount::ArcLength));
             means.contacts.push(grown.roadmap.contact_count());
         }
     }
-    means.length_m /= means.contacts.len() as f64;
     means
 }
 
@@ -160,9 +203,13 @@ fn main() {
 }
 
 fn tables(seeds: u64) {
-    println!("means of {seeds} seeds; hops: undirected, by windows; collisions: first arcs refused / hops refused");
-    println!("| scene, mu/V | paper: s, nodes, collisions, m | prm: ms, nodes, hops, collisions, m | exact: ms, nodes, hops, collisions, m | grazes |");
-    println!("|---|---|---|---|---|");
+    println!(
+        "mean and standard error of {seeds} seeds; hops: undirected, by windows; collisions of prm: hops whose first arc was refused"
+    );
+    println!(
+        "| scene, mu/V | paper: s, nodes, collisions, m | prm: ms, nodes, hops, collisions, m | no arc left, of these too high, narrow, grazes |"
+    );
+    println!("| exact: ms, nodes, hops, hops refused and too high, m |\n|---|---|---|---|---|");
     let mut joined = Vec::new();
     for problem in &PROBLEMS {
         let Problem { scene, friction, speed_m_s, paper } = problem;
@@ -175,11 +222,11 @@ fn tables(seeds: u64) {
         let name = format!("{}, {friction}/{speed_m_s}", scene.file.trim_end_matches(".stl"));
         let [sampled, exact] =
             [JoinTest::SampledAngles, JoinTest::ExactWindows].map(|test| measured(&ground, scene, test, (seeds, CONTACTS_MAX)));
-        let cells = |means: &Means| {
-            let Means { ms, nodes, hops, first_arcs_refused, refused, length_m, .. } = means;
-            format!("{ms:.1}, {nodes:.0}, {hops:.0}, {first_arcs_refused:.0} / {refused:.0}, {length_m:.1}")
-        };
-        println!("| {name} | {paper} | {} | {} | {:.2} |", cells(&sampled), cells(&exact), sampled.grazes);
+        let Means { ms, nodes, hops, first_arcs_refused, refused, too_high, narrow, grazes, length_m, .. } = &sampled;
+        print!("| {name} | {paper} | {ms:.1}; {nodes}; {hops}; {first_arcs_refused}; {length_m:.1} ");
+        print!("| {refused}; {too_high}; {narrow}; {grazes:.2} ");
+        let Means { ms, nodes, hops, refused, too_high, length_m, .. } = &exact;
+        println!("| {ms:.1}; {nodes}; {hops}; {refused} and {too_high}; {length_m:.1} |");
         joined.push((name, sampled, exact));
     }
     let ground = slot();

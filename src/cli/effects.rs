@@ -160,7 +160,7 @@ impl Purpose {
             ("search", "points_per_segment") => !matches!(self, Self::Hop | Self::Map { .. }),
             ("search", "node_spacing_max_m") => self != Self::Hop,
             // Of free routes over meshes.
-            ("search", "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => {
+            ("search", "planner" | "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => {
                 matches!(self, Self::Plan | Self::Simulate)
             }
             ("search", "effort" | "takeoff_angle" | "split") if by_objective => true,

@@ -62,7 +62,9 @@ pub use mesh_hop_answer::{
     MeshWindowEndRecord, MeshWindowRecord, mesh_hop_text,
 };
 pub(crate) use mesh_plan_answer::hops_of;
-pub use mesh_plan_answer::{MeshPlanAnswer, RoadmapGapRecord, RoadmapRecord, RoadmapRoundRecord, mesh_plan_text};
+pub use mesh_plan_answer::{
+    MeshPlanAnswer, RoadmapGapRecord, RoadmapRecord, RoadmapRoundRecord, SampledHopsRecord, mesh_plan_text,
+};
 pub use mesh_simulate_answer::{MeshSimulateAnswer, mesh_simulate_text};
 pub use objective_record::{AmountRecord, BudgetRecord, ObjectiveRecord};
 pub use path_record::{

@@ -19,8 +19,8 @@ use crate::{
     planner::{
         Amount, LabelCap, Objective,
         roadmap::{
-            ContactSampler, GrownRoadmap, NothingWithin, RoadmapEnd, RoadmapGap, RoadmapLimits, RoadmapPath, RoadmapQuestion,
-            SpaceBounds, grow_roadmap,
+            ContactSampler, GrownRoadmap, JoinTest, NothingWithin, OneByOne, RoadmapEnd, RoadmapGap, RoadmapLimits, RoadmapPath,
+            RoadmapPlanner, RoadmapQuestion, SpaceBounds, grow_one_by_one, grow_roadmap,
         },
     },
     progress::{Cancelled, Progress},
@@ -55,6 +55,12 @@ pub enum MeshRouteError {
     /// A front of hops against risk.
     #[error("a front of hops against risk is estimated along a profile, expected another amount for a free route over a mesh")]
     RiskFront,
+    /// A front over a roadmap that grows until its first path.
+    #[error(
+        "search.planner = \"prm\" stops at the first path and finds the shortest arcs, expected planner = \"exact\" for a front of hops \
+         against an amount"
+    )]
+    PrmFront,
     /// A terrain that is no mesh as it stands.
     #[error("terrain is no mesh with route = \"free\", expected one for a free route over it")]
     NoMesh,
@@ -131,6 +137,9 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
         if front == Front::HOPS_RISK {
             return Err(MeshRouteError::RiskFront);
         }
+        if scenario.mesh_search.planner == RoadmapPlanner::Prm {
+            return Err(MeshRouteError::PrmFront);
+        }
     }
     let (ground, mut warnings) = mesh_ground(scenario, &question.base.join(file), *scale)?;
     let search = &scenario.mesh_search;
@@ -141,7 +150,7 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
     });
     let [start, goal] = surface;
     let surface = [start?, goal?];
-    let stand_off_m = search.stand_off_m.unwrap_or(0.0);
+    let stand_off_m = search.contacts_stand_off_m();
     let stood = |contact: &MeshContact, end| {
         let point_m = contact.point_m();
         ground.stood_off(contact, stand_off_m).ok_or(MeshRouteError::NoStandOff { end, point_m, stand_off_m })
@@ -156,11 +165,20 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
         takeoff: scenario.search.takeoff,
         cap: LabelCap::default(),
     };
-    let limits = RoadmapLimits {
-        contacts_max: search.contacts(),
-        time_max: search.time_max_s.map(|time_s| Duration::try_from_secs_f64(time_s).unwrap_or(Duration::MAX)),
+    let contacts_max = search.contacts();
+    let time_max = search.time_max_s.map(|time_s| Duration::try_from_secs_f64(time_s).unwrap_or(Duration::MAX));
+    let (grown, joined) = match search.planner {
+        RoadmapPlanner::Exact => {
+            let limits = RoadmapLimits { contacts_max, time_max };
+            (grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?, None)
+        }
+        RoadmapPlanner::Prm => {
+            let height_max_m = search.bounds.map(|bounds| bounds.max.z);
+            let scheme = OneByOne { test: JoinTest::SampledAngles, height_max_m, contacts_max, time_max };
+            let (grown, joined) = grow_one_by_one(&ground, ends, &mut sampler, &asked, scheme, progress)?;
+            (grown, Some(joined))
+        }
     };
-    let grown = grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?;
     let facets = [sampler.facet_count(), sampler.turned()];
     let path = grown.route.path.as_ref().map(|found| hops_of_path(&ground, &grown, found)).transpose()?;
     path.as_ref().map(|path| flown_again(&ground, &grown, stand_off_m, path)).transpose()?;
@@ -169,6 +187,10 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
     let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends));
     let front = question.front.map(|front| front_of(scenario, &ground, &grown, (front.amount(), path.as_ref()))).transpose()?;
     let mut answer = answer((scenario, &ground), (given_m, &surface, *scale), (&grown, facets), (path.as_ref(), gap.as_ref()));
+    if let Some(joined) = &joined {
+        answer.roadmap.planner = RoadmapPlanner::Prm;
+        answer.roadmap.sampled_hops = Some(joined.into());
+    }
     (answer.front, answer.front_search) = front.unzip();
     Ok(MeshRouted { ground, grown, path, answer, warnings })
 }
@@ -273,7 +295,14 @@ fn left_out(scenario: &Scenario, grown: &GrownRoadmap, [facets, turned]: [usize;
         );
     }
     let ended_early = matches!(grown.end, RoadmapEnd::Contacts | RoadmapEnd::Time);
-    if turned < facets && ended_early {
+    if scenario.mesh_search.planner == RoadmapPlanner::Prm {
+        warnings.push(
+            "search.planner = \"prm\" is the method of Campana and Laumond: it tries seven angles of a hop, so that it may miss one through a \
+             narrow gap, however many contacts it has, and it stops at the first path; planner = \"exact\" misses no hop between its contacts \
+             and goes on to better paths"
+                .to_owned(),
+        );
+    } else if turned < facets && ended_early {
         warnings.push(format!(
             "{turned} of {facets} facets of the mesh within the bounds had a contact in their middle, and the others only by chance: a path \
              over small facets may have been missed; more contacts (search.contacts_max) or narrower search.bounds_m reach more of them"

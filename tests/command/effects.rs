@@ -66,6 +66,7 @@ const TELLING: [(&str, &str); 99] = [
     ("terrain.goal_x_m", "28"),
     ("search.points_per_segment", "3"),
     ("search.node_spacing_max_m", "0.7"),
+    ("search.planner", "prm"),
     ("search.contacts_max", "20"),
     ("search.stand_off_m", "0.1"),
     ("search.bounds_m", "[[0, 0, 0], [1, 1, 1]]"),

@@ -1,9 +1,13 @@
 //! The beam of arcs between two contacts, and a ball along one of them: what a search that samples arcs asks for.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
-use super::{MeshContact, MeshCourse, MeshGround};
-use crate::{ballistics::Arc, quantity::SlopeInterval, world::Contact};
+use super::{MeshContact, MeshContactFacet, MeshCourse, MeshGround};
+use crate::{
+    ballistics::Arc,
+    quantity::SlopeInterval,
+    world::{Contact, FrictionCone},
+};
 
 impl MeshGround {
     /// The course of a hop and its beam: the lofts that all limits leave, before the mesh is cut and but for speeds that the machine can
@@ -21,6 +25,21 @@ impl MeshGround {
             return Some((course, SlopeInterval::EMPTY));
         }
         Some((course, SlopeInterval { lower: lofts.lower.max(0.0), upper: lofts.upper }))
+    }
+
+    /// The least of the cuts of the friction cones at a contact by the vertical plane of a heading, as the square of the tangent of half the
+    /// angle of the cut; infinite where angles are stated instead, and negative where the plane misses a cone.
+    ///
+    /// ```text
+    ///     tan^2 delta = (1 + mu^2) ((n . e)^2 + nz^2) - 1
+    /// ```
+    pub fn cone_cut(&self, contact: &MeshContact, heading: Vector2<f64>) -> f64 {
+        let cut = |facet: &MeshContactFacet| {
+            let along = facet.normal.x * heading.x + facet.normal.y * heading.y;
+            let friction = self.friction_of(facet.id).map(FrictionCone::coefficient);
+            friction.map_or(f64::INFINITY, |mu| (1.0 + mu * mu) * (along * along + facet.normal.z * facet.normal.z) - 1.0)
+        };
+        contact.facets().iter().map(cut).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a ball of a radius meets the mesh at one of the points of an arc that are evenly spaced in horizontal distance, as many as

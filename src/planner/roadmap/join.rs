@@ -33,6 +33,11 @@ pub const SAMPLED_SHARES: [f64; 7] = [0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.87
 /// How far over the line of sight the beam of sampled angles begins, rad.
 const OVER_SIGHT: f64 = 0.001;
 
+/// A cone whose cut by the plane of the hop has `tan^2 delta / cos^2 theta` below this is refused: half the angle of the cut is `delta`, and
+/// the heading is `theta` from the x axis, so that the rule depends on the axes of the mesh. It is that of the program, which divides the
+/// equations of the cone by `cos theta`; the paper refuses a cut that is one ray.
+const NARROW_CUT: f64 = 0.05;
+
 /// Beams both ways of a hop that differ by no more than this share are one beam: its arcs are flown either way.
 const ONE_BEAM: f64 = 1.0e-9;
 
@@ -41,10 +46,14 @@ const ONE_BEAM: f64 = 1.0e-9;
 pub struct JoinCounts {
     /// Hops with a beam, so that the mesh was asked; one where both ways have the same beam.
     pub tried: u64,
-    /// Of these, those whose first arc met the mesh or rose over the bounds: what the paper counts as collisions. By exact windows none.
+    /// Hops with a beam that sampling does not try, since it refuses narrow cuts of a friction cone.
+    pub narrow: u64,
+    /// Of those tried, those whose first arc met the mesh or rose over the bounds: what the paper counts as collisions. By exact windows none.
     pub first_arcs_refused: u64,
-    /// Of these, those with no arc left.
+    /// Of those tried, those with no arc left.
     pub refused: u64,
+    /// Hops of which even the flattest arc rises over the bounds: by sampling they are among the refused, by exact windows not among the tried.
+    pub too_high: u64,
     /// Hops that sampling let pass and the exact windows of their contacts do not have, taken out of the roadmap: the ball passed by an edge.
     pub grazes: u64,
 }
@@ -69,6 +78,17 @@ impl Joiner<'_> {
     /// Elsewhere each way is tested by itself.
     pub(super) fn join(&mut self, old: (usize, &MeshContact), new: (usize, &MeshContact), found: &mut Vec<Joined>) {
         let (Some(forth), Some(back)) = (self.ground.beam(old.1, new.1), self.ground.beam(new.1, old.1)) else { return };
+        if forth.1.is_empty() && back.1.is_empty() {
+            return;
+        }
+        if self.test == JoinTest::SampledAngles {
+            let heading = forth.0.plane.heading;
+            let cut = |contact| self.ground.cone_cut(contact, heading);
+            if cut(old.1).min(cut(new.1)) < NARROW_CUT * heading.x * heading.x {
+                self.counts.narrow += 1;
+                return;
+            }
+        }
         let first = found.len();
         self.one_way(&forth, [old, new], found);
         if are_one(forth.1, back.1) {
@@ -101,6 +121,7 @@ impl Joiner<'_> {
             JoinTest::ExactWindows => {
                 let under = if rise_max_m < f64::INFINITY { apex_height(course.sight, rise_max_m) } else { SlopeInterval::ALL };
                 if beam.intersect(under).is_empty() {
+                    self.counts.too_high += 1;
                     return;
                 }
                 self.counts.tried += 1;
@@ -135,6 +156,7 @@ impl Joiner<'_> {
             self.counts.first_arcs_refused += u64::from(number == 0);
         }
         self.counts.first_arcs_refused += u64::from(is_hopeless);
+        self.counts.too_high += u64::from(is_hopeless);
         self.counts.refused += 1;
         None
     }

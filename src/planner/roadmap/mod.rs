@@ -15,6 +15,7 @@ mod anytime;
 mod file;
 mod graph;
 mod join;
+mod kind;
 mod legs;
 mod one_by_one;
 mod route;
@@ -24,6 +25,7 @@ pub use anytime::{GAIN_MIN, GrownRoadmap, RoadmapEnd, RoadmapLimits, RoadmapRoun
 pub use file::RoadmapFileError;
 pub use graph::{Roadmap, RoadmapHop};
 pub use join::{JoinCounts, JoinTest, PROBE_RADIUS_M, PROBE_STAND_OFF_M, PROBE_STEP_M, SAMPLED_SHARES};
+pub use kind::RoadmapPlanner;
 pub use legs::RoadmapLegs;
 pub use one_by_one::{OneByOne, grow_one_by_one};
 pub use route::{RoadmapGap, RoadmapPath, RoadmapQuestion, RoadmapRoute};

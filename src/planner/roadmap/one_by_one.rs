@@ -51,8 +51,14 @@ pub fn grow_one_by_one(
     let numbers = if is_there { (0, 0) } else { (0, 1) };
     let OneByOne { test, height_max_m, .. } = scheme;
     let joiner = Joiner { ground, test, height_max_m, counts: JoinCounts::default(), buffers: MeshBuffers::default() };
-    let mut growth =
-        Growth { joiner, bounds: speed_bounds(ground), roadmap: Roadmap::new(), reached: Vec::new(), found: Vec::new(), layer: Vec::new() };
+    let mut growth = Growth {
+        joiner,
+        bounds: speed_bounds(ground),
+        roadmap: Roadmap::new(),
+        reached: Vec::new(),
+        found: Vec::new(),
+        layer: Vec::new(),
+    };
     let meter = Meter::new(progress, Stage::Search);
     meter.report(Detail::None)?;
     for contact in ends {
