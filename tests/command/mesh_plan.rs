@@ -217,7 +217,6 @@ fn the_planner_of_the_paper_says_so_and_its_path_is_flown_again() {
     let roadmap = &document["roadmap"];
     assert_eq!((&document["verdict"], &document["verified"]), (&"traversable".into(), &true.into()));
     assert_eq!((&roadmap["planner"], &roadmap["ended_by"]), (&"prm".into(), &"joined".into()));
-    assert_eq!(document["start"]["stand_off_m"], 0.0, "the place on the surface");
     let count = |key: &str| roadmap["sampled_hops"][key].as_u64().unwrap();
     let (tried, first, refused) = (count("tried"), count("first_arcs_refused"), count("refused"));
     assert!(tried > first && first >= refused && refused > 0, "{roadmap}");
