@@ -163,6 +163,7 @@ impl Purpose {
             ("search", "points_per_segment") => !matches!(self, Self::Hop | Self::Map { .. }),
             ("search", "node_spacing_max_m") => self != Self::Hop,
             // Of free routes over meshes.
+            ("search", "planner") => matches!(self, Self::Plan | Self::Run | Self::Simulate | Self::Compare),
             ("search", "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => {
                 matches!(self, Self::Plan | Self::Run | Self::Simulate | Self::Compare | Self::MapMesh)
             }

@@ -292,7 +292,7 @@ fn contacts_lines(sheet: &mut Sheet, contacts: &MapContactsRecord) {
     let why = match contacts.ended_by {
         RoadmapEnd::Time => "it stopped since another round would have taken too long (search.time_max_s)",
         RoadmapEnd::Exhausted => "it stopped since no more contacts were found",
-        RoadmapEnd::Contacts | RoadmapEnd::Gain | RoadmapEnd::Given => return,
+        RoadmapEnd::Contacts | RoadmapEnd::Gain | RoadmapEnd::Joined | RoadmapEnd::Given => return,
     };
     sheet.line(format_args!("{why}"));
 }

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     graph::proof::ProofVerdict,
-    planner::roadmap::{DrawnContacts, GrownRoadmap, RoadmapEnd, RoadmapGap, RoadmapRound},
+    planner::roadmap::{DrawnContacts, GrownRoadmap, JoinCounts, RoadmapEnd, RoadmapGap, RoadmapPlanner, RoadmapRound},
     planner::{Amount, Amounts, Objective},
     quantity::format_number,
 };
@@ -65,11 +65,13 @@ pub struct MeshPlanAnswer {
 /// The roadmap of a plan over a mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RoadmapRecord {
+    /// `exact`: all pairs of contacts by exact windows; `prm`: that of Campana and Laumond, by sampled angles.
+    pub planner: RoadmapPlanner,
     /// Contacts, start and goal included.
     pub contacts: usize,
     /// Of these, drawn by area.
     pub by_area: usize,
-    /// Of these, the middles of facets.
+    /// Of these, the middles of facets; of `prm`, points of facets each of which has the same probability.
     pub on_facets: usize,
     /// Of these, drawn about the best path.
     pub about_path: usize,
@@ -83,15 +85,43 @@ pub struct RoadmapRecord {
     pub facets: usize,
     /// Facets whose middle was a contact or was left out.
     pub facets_tried: usize,
-    /// Windows of hops between two contacts.
+    /// Windows of hops between two contacts; of `prm`, the arcs that were found free, of which those of a hop both ways are two.
     pub windows: usize,
     /// Ordered pairs of contacts tested.
     pub pairs_tested: u64,
-    /// Why it stopped growing: `contacts`, `time`, `gain` (less than 1 % in two rounds), `exhausted` (no more contacts of use), or `given`
-    /// where it was read from a file and start and goal alone were added; how its other contacts were drawn is then not known, and counts 0.
+    /// Of `prm`: the hops that it sampled; absent otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sampled_hops: Option<SampledHopsRecord>,
+    /// Why it stopped growing: `contacts`, `time`, `gain` (less than 1 % in two rounds), `exhausted` (no more contacts of use), `joined` (of
+    /// `prm`: start and goal are joined), or `given` where it was read from a file and start and goal alone were added; how its other contacts
+    /// were drawn is then not known, and counts 0.
     pub ended_by: RoadmapEnd,
     /// Its rounds.
     pub history: Vec<RoadmapRoundRecord>,
+}
+
+/// The hops that a search by sampled angles tested, each once where its beam is the same both ways.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SampledHopsRecord {
+    /// Hops whose limits leave a beam of arcs.
+    pub tried: u64,
+    /// Of these, hops whose first arc met the mesh or rose over the bounds: the collisions of the paper's Table I.
+    pub first_arcs_refused: u64,
+    /// Of these, hops all of whose sampled arcs did.
+    pub refused: u64,
+    /// Of these, hops of which even the flattest arc rises over the bounds.
+    pub too_high: u64,
+    /// Hops that were not tried, since the plane of the hop cuts a friction cone narrowly.
+    pub narrow: u64,
+    /// Hops of a path that the sampled test let pass through the mesh, and that were taken out when the path was checked.
+    pub grazes: u64,
+}
+
+impl From<&JoinCounts> for SampledHopsRecord {
+    fn from(counts: &JoinCounts) -> Self {
+        let JoinCounts { narrow, tried, first_arcs_refused, refused, too_high, grazes } = *counts;
+        Self { tried, first_arcs_refused, refused, too_high, narrow, grazes }
+    }
 }
 
 /// One round of a roadmap.
@@ -128,6 +158,9 @@ pub struct RoadmapGapRecord {
     pub refusals: LimitCounts,
     /// The number of judged pairs over one another: a hop straight up has no plane.
     pub vertical: u64,
+    /// The number of judged pairs whose hop has a window that a search by sampled angles missed; absent if none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub missed_by_sampling: Option<u64>,
 }
 
 impl RoadmapRecord {
@@ -135,6 +168,7 @@ impl RoadmapRecord {
     pub fn new(grown: &GrownRoadmap, objective: &Objective, [facets, facets_tried]: [usize; 2]) -> Self {
         let DrawnContacts { by_area, on_facets, about_path, buried, outside, useless } = grown.drawn;
         Self {
+            planner: RoadmapPlanner::Exact,
             contacts: grown.roadmap.contact_count(),
             by_area,
             on_facets,
@@ -146,6 +180,7 @@ impl RoadmapRecord {
             facets_tried,
             windows: grown.roadmap.window_count(),
             pairs_tested: grown.roadmap.pairs_tested(),
+            sampled_hops: None,
             ended_by: grown.end,
             history: grown.history.iter().map(|round| RoadmapRoundRecord::new(round, objective)).collect(),
         }
@@ -183,6 +218,7 @@ impl From<&RoadmapGap> for RoadmapGapRecord {
             judged_pairs: gap.judged,
             refusals: (&gap.refusals).into(),
             vertical: gap.vertical,
+            missed_by_sampling: (gap.free > 0).then_some(gap.free),
         }
     }
 }
@@ -246,6 +282,9 @@ fn roadmap_lines(sheet: &mut Sheet, roadmap: &RoadmapRecord) {
         sheet.line(format_args!("roadmap: {contacts} contacts, start and goal added to those read, {windows} windows"));
         return;
     }
+    if let Some(hops) = &roadmap.sampled_hops {
+        return sampled_lines(sheet, roadmap, hops);
+    }
     sheet.line(format_args!(
         "roadmap: {contacts} contacts ({by_area} by area, {on_facets} in the middle of facets, {about_path} about the path), {windows} windows, \
          pairs tested: {pairs_tested}"
@@ -260,6 +299,32 @@ fn roadmap_lines(sheet: &mut Sheet, roadmap: &RoadmapRecord) {
     };
     let rounds: Vec<String> = roadmap.history.iter().map(|round| format!("{}: {}", round.contacts, best(round))).collect();
     sheet.line(format_args!("contacts and best path: {}", rounds.join("; ")));
+    end_line(sheet, roadmap);
+}
+
+/// The roadmap of Campana and Laumond's method.
+fn sampled_lines(sheet: &mut Sheet, roadmap: &RoadmapRecord, hops: &SampledHopsRecord) {
+    let RoadmapRecord { contacts, by_area, on_facets, windows, pairs_tested, .. } = roadmap;
+    sheet.line(format_args!(
+        "planner: prm, the method of Campana and Laumond: up to seven take-off angles of a hop, checked by a ball along the arc"
+    ));
+    sheet.line(format_args!(
+        "roadmap: {contacts} contacts ({by_area} by area, {on_facets} by facet), {windows} arcs, pairs tested: {pairs_tested}"
+    ));
+    sheet.line(format_args!(
+        "{} hops tried: {} refused by collision, of which {} rise over the bounds; of {} the first arc was refused; {} not tried for a narrow cone",
+        hops.tried, hops.refused, hops.too_high, hops.first_arcs_refused, hops.narrow
+    ));
+    if hops.grazes > 0 {
+        sheet.line(format_args!("{} hops of paths were taken out: the ball let them pass through the mesh", hops.grazes));
+    }
+    sheet
+        .line(format_args!("points left out: {} buried, {} outside the bounds", roadmap.left_out_buried, roadmap.left_out_outside));
+    end_line(sheet, roadmap);
+}
+
+/// Why it stopped growing.
+fn end_line(sheet: &mut Sheet, roadmap: &RoadmapRecord) {
     sheet.line(format_args!(
         "{}",
         match roadmap.ended_by {
@@ -267,6 +332,8 @@ fn roadmap_lines(sheet: &mut Sheet, roadmap: &RoadmapRecord) {
             RoadmapEnd::Time => "it ended by its time (search.time_max_s): a faster machine may find a better path",
             RoadmapEnd::Gain => "it ended when the best path gained less than 1 % in two rounds",
             RoadmapEnd::Exhausted | RoadmapEnd::Given => "it ended when no more contacts of use were found",
+            RoadmapEnd::Joined =>
+                "it ended when start and goal were joined, as the method has it: more contacts may give a shorter path",
         }
     ));
 }
@@ -294,7 +361,8 @@ fn gap_lines(sheet: &mut Sheet, gap: &RoadmapGapRecord) {
         Some(width_m) => {
             let upright = (gap.vertical > 0).then(|| format!("straight up {}", gap.vertical));
             let by_limit = gap.refusals.ranked().into_iter().map(|(limit, count)| format!("{limit} {count}"));
-            let refused: Vec<String> = by_limit.chain(upright).collect();
+            let missed = gap.missed_by_sampling.map(|count| format!("missed by the sampled angles {count}"));
+            let refused: Vec<String> = by_limit.chain(upright).chain(missed).collect();
             sheet.line(format_args!(
                 "the gap is {width_m:.3} m wide; of {} hops across it {} were judged, refused by {}",
                 gap.pairs,

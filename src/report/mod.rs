@@ -69,7 +69,9 @@ pub use mesh_map_answer::{
     mesh_map_text, write_map_contacts_csv,
 };
 pub(crate) use mesh_plan_answer::hops_of;
-pub use mesh_plan_answer::{MeshPlanAnswer, RoadmapGapRecord, RoadmapRecord, RoadmapRoundRecord, mesh_plan_text};
+pub use mesh_plan_answer::{
+    MeshPlanAnswer, RoadmapGapRecord, RoadmapRecord, RoadmapRoundRecord, SampledHopsRecord, mesh_plan_text,
+};
 pub use mesh_simulate_answer::{MeshSimulateAnswer, mesh_simulate_text};
 pub use objective_record::{AmountRecord, BudgetRecord, ObjectiveRecord};
 pub use path_record::{

@@ -5,7 +5,7 @@ use crate::{
     ballistics::TakeoffChoice,
     graph::{Effort, ReliabilityUse},
     hop::Split,
-    planner::{Amount, Objective},
+    planner::{Amount, Objective, roadmap::RoadmapPlanner},
     uncertainty::{Distribution, Policy},
     world::{ClearanceRule, LandingMode, RESTITUTION_MAX, SpeedLevels},
 };
@@ -177,12 +177,13 @@ const CHOICES: [&str; 4] =
 const RELIABILITY_USES: [&str; 3] = [ReliabilityUse::ALL[0].name(), ReliabilityUse::ALL[1].name(), ReliabilityUse::ALL[2].name()];
 const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const DISTRIBUTIONS: [&str; 2] = [Distribution::ALL[0].name(), Distribution::ALL[1].name()];
+const PLANNERS: [&str; 2] = [RoadmapPlanner::ALL[0].name(), RoadmapPlanner::ALL[1].name()];
 const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
 
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 100] = [
+pub const CATALOGUE: [Key; 101] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -363,6 +364,13 @@ pub const CATALOGUE: [Key; 100] = [
     key("search", "node_spacing_max_m", LENGTH, "instead: greatest spacing of neighbouring points along the ground, m"),
     key(
         "search",
+        "planner",
+        Kind::Word(&PLANNERS),
+        "of a free route over a mesh: exact, all pairs of contacts by exact windows; prm, that of Campana and Laumond, by sampled angles; absent: \
+         exact",
+    ),
+    key(
+        "search",
         "contacts_max",
         Kind::Count { min: 2, max: CONTACTS_MOST },
         "of a free route over a mesh: most contacts of its roadmap, start and goal included; absent: 4000",
@@ -371,7 +379,7 @@ pub const CATALOGUE: [Key; 100] = [
         "search",
         "stand_off_m",
         Kind::Number { min: 0.0, max: 1e3 },
-        "of a free route over a mesh: how far contacts stand off the surface, along its normal, m; absent: 0",
+        "of a free route over a mesh: how far contacts stand off the surface, along its normal, m; absent: 0, with planner = \"prm\" 0.021",
     ),
     key(
         "search",

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::{Budget, Route, Scenario, TerrainSource, UncertaintyKeys};
 use crate::{
     graph::{PointSpacing, ReliabilityUse},
-    planner::SearchedCommands,
+    planner::{SearchedCommands, roadmap::RoadmapPlanner},
     quantity::AngleInterval,
     terrain::{MapPlace, NoDataRule},
     world::{ClearanceRule, FaceGroup, Grip, RestSlope},
@@ -226,6 +226,10 @@ fn search(scenario: &Scenario) -> Value {
     object([
         ("points_per_segment", points),
         ("node_spacing_max_m", spacing),
+        (
+            "planner",
+            (scenario.mesh_search.planner != RoadmapPlanner::default()).then(|| scenario.mesh_search.planner.name().into()),
+        ),
         ("contacts_max", scenario.mesh_search.contacts_max.map(Value::from)),
         ("stand_off_m", scenario.mesh_search.stand_off_m.map(Value::from)),
         (

@@ -3,11 +3,13 @@
 use nalgebra::Point3;
 
 use super::{Entries, ProblemKind, TerrainSource};
-use crate::planner::roadmap::SpaceBounds;
+use crate::planner::roadmap::{PROBE_STAND_OFF_M, RoadmapPlanner, SpaceBounds};
 
 /// The keys of a search over a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct MeshSearch {
+    /// Which planner builds its roadmap.
+    pub planner: RoadmapPlanner,
     /// The most contacts of its roadmap, if the scenario gives it.
     pub contacts_max: Option<u32>,
     /// How far contacts stand off the surface, m, if the scenario gives it.
@@ -28,6 +30,15 @@ impl MeshSearch {
     pub fn contacts(&self) -> usize {
         self.contacts_max.map_or(Self::CONTACTS, |most| most as usize)
     }
+
+    /// How far contacts stand off the surface, m: as given, else what the planner takes.
+    pub fn contacts_stand_off_m(&self) -> f64 {
+        let of_planner = match self.planner {
+            RoadmapPlanner::Exact => 0.0,
+            RoadmapPlanner::Prm => PROBE_STAND_OFF_M,
+        };
+        self.stand_off_m.unwrap_or(of_planner)
+    }
 }
 
 /// The keys, all of which only a free route over a mesh has.
@@ -35,7 +46,7 @@ pub(super) fn mesh_search(entries: &mut Entries, terrain: Option<&TerrainSource>
     if !matches!(terrain, Some(TerrainSource::MeshInSpace { .. })) {
         // Of a mesh whose ends are wrong, that is the problem; a scenario without terrain may be laid over one.
         if terrain.is_some() && !entries.ask_for_free_mesh() {
-            for name in ["contacts_max", "stand_off_m", "bounds_m", "seed", "time_max_s"] {
+            for name in ["planner", "contacts_max", "stand_off_m", "bounds_m", "seed", "time_max_s"] {
                 if entries.value("search", name).is_some() {
                     let message =
                         format!("search.{name} is for free routes over a mesh, and the terrain of this scenario is another one");
@@ -47,6 +58,7 @@ pub(super) fn mesh_search(entries: &mut Entries, terrain: Option<&TerrainSource>
     }
     let corners = entries.corners("search", "bounds_m");
     MeshSearch {
+        planner: super::mesh_planner::planner(entries),
         contacts_max: entries.count("search", "contacts_max").and_then(|most| u32::try_from(most).ok()),
         stand_off_m: entries.number("search", "stand_off_m"),
         bounds: corners.map(|[min, max]| SpaceBounds { min: Point3::from(min), max: Point3::from(max) }),

@@ -9,6 +9,7 @@ mod document;
 mod entries;
 mod face_groups;
 mod file_kind;
+mod mesh_planner;
 mod mesh_search;
 mod problem;
 mod propulsion;

@@ -11,7 +11,7 @@ use crate::{
     ballistics::TakeoffChoice,
     graph::{Effort, PointSpacing, ReliabilityUse, SearchOptions},
     hop::Split,
-    planner::{Objective, SearchedCommands},
+    planner::{Objective, SearchedCommands, roadmap::RoadmapPlanner},
     quantity::{Angle, AngleInterval},
     terrain::{MapPlace, NoDataRule},
     world::{
@@ -122,6 +122,10 @@ impl Scenario {
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
         let budget = super::budget::budget(&entries);
         let (objective, commands, wanted_angle) = super::budget::objective(&mut entries, budget, &hopper, uncertainty.as_ref());
+        let (objective, commands) = match mesh_search.planner {
+            RoadmapPlanner::Exact => (objective, commands),
+            RoadmapPlanner::Prm => (Some(super::mesh_planner::objective_of_prm()), SearchedCommands::Distinct),
+        };
         let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries, uncertainty.as_ref(), budget);
         // Nothing estimates the reliability of hops over a mesh.
         let over_mesh = matches!(terrain, Some(TerrainSource::MeshInSpace { .. }));

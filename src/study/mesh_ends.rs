@@ -33,18 +33,17 @@ pub(super) struct MeshEnds {
     pub(super) warnings: Vec<String>,
 }
 
-/// Reads the mesh of a scenario and moves start and goal to it.
+/// Reads the mesh of a scenario and moves start and goal to it, so far off its surface.
 ///
 /// # Errors
 /// [`MeshRouteError`], of the mesh, its keys, or an end that gives no contact.
-pub(super) fn mesh_ends(scenario: &Scenario, base: &Path) -> Result<MeshEnds, MeshRouteError> {
+pub(super) fn mesh_ends(scenario: &Scenario, base: &Path, stand_off_m: f64) -> Result<MeshEnds, MeshRouteError> {
     let Some(TerrainSource::MeshInSpace { path: file, scale, start_m, goal_m }) = &scenario.terrain else {
         return Err(MeshRouteError::NoMesh);
     };
     check_keys(scenario)?;
     let (ground, mut warnings) = mesh_ground(scenario, &base.join(file), *scale)?;
     let search = &scenario.mesh_search;
-    let stand_off_m = search.stand_off_m.unwrap_or(0.0);
     let surface = [(*start_m, "start"), (*goal_m, "goal")].map(|(at, end)| {
         let contact = on_mesh(&ground, at, end, &mut warnings)?;
         within(search.bounds, end, contact)

@@ -33,7 +33,7 @@ impl MeshRouted {
     pub fn mission(&self, scenario: &Scenario) -> Result<Option<Mission>, ConstraintProblem> {
         let Some(path) = self.path.clone().filter(|_| self.ground.radius_m() == 0.0) else { return Ok(None) };
         let roadmap = &self.grown.roadmap;
-        let planning = self.ground.clone().standing_off(scenario.mesh_search.stand_off_m.unwrap_or(0.0));
+        let planning = self.ground.clone().standing_off(scenario.mesh_search.contacts_stand_off_m());
         let ground = planning.under(&scenario.hopper.with_any_command(), scenario.body.gravity, &scenario.surface)?;
         let start = roadmap.contact(self.grown.ends.0).at_m(0.0);
         let goal = roadmap.contact(self.grown.ends.1).at_m(path.hops.last().map_or(0.0, |hop| hop.landing.along_m));

@@ -62,7 +62,7 @@ pub struct MeshReached {
 /// [`MeshRouteError`].
 pub fn mesh_reach(question: &MeshReachQuestion<'_>, progress: &dyn Progress) -> Result<MeshReached, MeshRouteError> {
     let scenario = question.scenario;
-    let mut ends = mesh_ends(scenario, question.base)?;
+    let mut ends = mesh_ends(scenario, question.base, scenario.mesh_search.stand_off_m.unwrap_or(0.0))?;
     let search = &scenario.mesh_search;
     let [start, goal] = ends.stood.clone();
     let is_there = (goal.point_m() - start.point_m()).norm() <= ends.ground.tree().resolution_m();

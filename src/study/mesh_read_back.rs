@@ -69,7 +69,8 @@ pub fn check_over_mesh(
     if stated != rows.len() as u64 {
         return Err(ReadBackError::Hops { stated, listed: rows.len() }.into());
     }
-    let MeshEnds { ground, scale, given_m, surface, stood, stand_off_m, mut warnings } = mesh_ends(scenario, base)?;
+    let MeshEnds { ground, scale, given_m, surface, stood, stand_off_m, mut warnings } =
+        mesh_ends(scenario, base, scenario.mesh_search.contacts_stand_off_m())?;
     let hops = rows.iter().map(hop_of).collect::<Result<_, _>>()?;
     let path = HopPath::of_hops(hops, ground.envelope().hopper());
     // Start and goal that are one contact need no hop, wherever they were asked for within its resolution.

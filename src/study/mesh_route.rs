@@ -18,8 +18,8 @@ use crate::{
     planner::{
         Amount, LabelCap, Objective,
         roadmap::{
-            ContactSampler, GrownRoadmap, NothingWithin, Roadmap, RoadmapEnd, RoadmapFileError, RoadmapGap, RoadmapLimits,
-            RoadmapPath, RoadmapQuestion, SpaceBounds, grow_roadmap, over_roadmap,
+            ContactSampler, GrownRoadmap, JoinTest, NothingWithin, OneByOne, Roadmap, RoadmapEnd, RoadmapFileError, RoadmapGap,
+            RoadmapLimits, RoadmapPath, RoadmapPlanner, RoadmapQuestion, SpaceBounds, grow_one_by_one, grow_roadmap, over_roadmap,
         },
     },
     progress::{Cancelled, Progress},
@@ -56,6 +56,12 @@ pub enum MeshRouteError {
     /// A front of hops against risk.
     #[error("a front of hops against risk is estimated along a profile, expected another amount for a free route over a mesh")]
     RiskFront,
+    /// A front over a roadmap that grows until its first path.
+    #[error(
+        "search.planner = \"prm\" stops at the first path and finds the shortest arcs, expected planner = \"exact\" for a front of hops \
+         against an amount"
+    )]
+    PrmFront,
     /// A terrain that is no mesh as it stands.
     #[error("terrain is no mesh with route = \"free\", expected one for a free route over it")]
     NoMesh,
@@ -134,8 +140,12 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
         if front == Front::HOPS_RISK {
             return Err(MeshRouteError::RiskFront);
         }
+        if scenario.mesh_search.planner == RoadmapPlanner::Prm {
+            return Err(MeshRouteError::PrmFront);
+        }
     }
-    let MeshEnds { ground, scale, given_m, surface, stood: ends, stand_off_m, mut warnings } = mesh_ends(scenario, question.base)?;
+    let MeshEnds { ground, scale, given_m, surface, stood: ends, stand_off_m, mut warnings } =
+        mesh_ends(scenario, question.base, scenario.mesh_search.contacts_stand_off_m())?;
     let search = &scenario.mesh_search;
     let mut sampler = ContactSampler::new(&ground, search.bounds, stand_off_m, search.seed.unwrap_or(0))?;
     let (objective, budgets) = (scenario.full_objective(), scenario.total_budgets());
@@ -146,17 +156,24 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
         takeoff: scenario.search.takeoff,
         cap: LabelCap::default(),
     };
-    let limits = RoadmapLimits {
-        contacts_max: search.contacts(),
-        time_max: search.time_max_s.map(|time_s| Duration::try_from_secs_f64(time_s).unwrap_or(Duration::MAX)),
-    };
-    let grown = match question.roadmap {
-        Some(file) => {
+    let contacts_max = search.contacts();
+    let time_max = search.time_max_s.map(|time_s| Duration::try_from_secs_f64(time_s).unwrap_or(Duration::MAX));
+    let (grown, joined) = match (question.roadmap, search.planner) {
+        (Some(file), _) => {
             let read = File::open(file).map_err(MeshRouteError::NoRoadmap)?;
             let roadmap = Roadmap::read_json(&ground, BufReader::new(read))?;
-            over_roadmap(&ground, roadmap, ends, &asked, progress)?
+            (over_roadmap(&ground, roadmap, ends, &asked, progress)?, None)
         }
-        None => grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?,
+        (None, RoadmapPlanner::Exact) => {
+            let limits = RoadmapLimits { contacts_max, time_max };
+            (grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?, None)
+        }
+        (None, RoadmapPlanner::Prm) => {
+            let height_max_m = search.bounds.map(|bounds| bounds.max.z);
+            let scheme = OneByOne { test: JoinTest::SampledAngles, height_max_m, contacts_max, time_max };
+            let (grown, joined) = grow_one_by_one(&ground, ends, &mut sampler, &asked, scheme, progress)?;
+            (grown, Some(joined))
+        }
     };
     let facets = [sampler.facet_count(), sampler.turned()];
     let path = grown.route.path.as_ref().map(|found| hops_of_path(&ground, &grown, found)).transpose()?;
@@ -166,6 +183,10 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
     let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends, progress)).transpose()?;
     let front = question.front.map(|front| front_of(scenario, &ground, &grown, (front.amount(), path.as_ref()))).transpose()?;
     let mut answer = answer((scenario, &ground), (given_m, &surface, scale), (&grown, facets), (path.as_ref(), gap.as_ref()));
+    if let Some(joined) = &joined {
+        answer.roadmap.planner = RoadmapPlanner::Prm;
+        answer.roadmap.sampled_hops = Some(joined.into());
+    }
     (answer.front, answer.front_search) = front.unzip();
     Ok(MeshRouted { ground, grown, path, answer, warnings })
 }
@@ -246,6 +267,7 @@ fn left_out(scenario: &Scenario, grown: &GrownRoadmap, [facets, turned]: [usize;
     let mut warnings = Vec::new();
     let search = &scenario.mesh_search;
     let drawing = [
+        ("search.planner", search.planner == RoadmapPlanner::Prm),
         ("search.contacts_max", search.contacts_max.is_some()),
         ("search.time_max_s", search.time_max_s.is_some()),
         ("search.seed", search.seed.is_some()),
@@ -268,7 +290,14 @@ fn left_out(scenario: &Scenario, grown: &GrownRoadmap, [facets, turned]: [usize;
         );
     }
     let ended_early = matches!(grown.end, RoadmapEnd::Contacts | RoadmapEnd::Time);
-    if turned < facets && ended_early {
+    if scenario.mesh_search.planner == RoadmapPlanner::Prm {
+        warnings.push(
+            "search.planner = \"prm\" is the method of Campana and Laumond: it tries seven angles of a hop, so that it may miss one through a \
+             narrow gap, however many contacts it has, and it stops at the first path; planner = \"exact\" misses no hop between its contacts \
+             and goes on to better paths"
+                .to_owned(),
+        );
+    } else if turned < facets && ended_early {
         warnings.push(format!(
             "{turned} of {facets} facets of the mesh within the bounds had a contact in their middle, and the others only by chance: a path \
              over small facets may have been missed; more contacts (search.contacts_max) or narrower search.bounds_m reach more of them"

@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 99] = [
+const TELLING: [(&str, &str); 100] = [
     ("body.name", "moon"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -66,6 +66,7 @@ const TELLING: [(&str, &str); 99] = [
     ("terrain.goal_x_m", "28"),
     ("search.points_per_segment", "3"),
     ("search.node_spacing_max_m", "0.7"),
+    ("search.planner", "prm"),
     ("search.contacts_max", "20"),
     ("search.stand_off_m", "0.1"),
     ("search.bounds_m", "[[0, 0, 0], [1, 1, 1]]"),

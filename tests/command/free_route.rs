@@ -299,6 +299,10 @@ const ANSWERS: [(&str, &str); 12] = [
         "simulate data/scenarios/lunar_rille_free.toml --set uncertainty.takeoff_speed_sigma_fraction=0.005",
         "open-loop: 0 of 300 trials",
     ),
+    (
+        "simulate data/scenarios/lunar_rille_free.toml --set uncertainty.takeoff_speed_sigma_fraction=0.005",
+        "replan: 300 of 300 trials",
+    ),
     ("simulate data/scenarios/lunar_rille_free.toml --goal 350,200", "traversable, 14 hops"),
     ("simulate data/scenarios/lunar_rille_free.toml --goal 350,200", "replan: 491 of 500 trials"),
 ];

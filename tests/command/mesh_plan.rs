@@ -246,3 +246,58 @@ fn a_roadmap_is_read_back_for_other_ends() {
     }
     assert!(!desk.path().join("x.json").exists());
 }
+
+const PRM: [&str; 6] = ["plan", "room.toml", "--set", "search.planner=prm", "--set", "search.objective=[\"arc-length\"]"];
+
+#[test]
+fn the_planner_of_the_paper_says_so_and_its_path_is_flown_again() {
+    let desk = room(0.8, 1.2);
+    let words = [&PRM[..], &["--set", "search.contacts_max=3000"]].concat();
+    let document = desk.json(&words);
+    let roadmap = &document["roadmap"];
+    assert_eq!((&document["verdict"], &document["verified"]), (&"traversable".into(), &true.into()));
+    assert_eq!((&roadmap["planner"], &roadmap["ended_by"]), (&"prm".into(), &"joined".into()));
+    let count = |key: &str| roadmap["sampled_hops"][key].as_u64().unwrap();
+    let (tried, first, refused) = (count("tried"), count("first_arcs_refused"), count("refused"));
+    assert!(tried > first && first >= refused, "{roadmap}");
+    // One greatest speed: every free hop is flown either way.
+    assert_eq!(roadmap["windows"].as_u64().unwrap(), 2 * (tried - refused - count("grazes")));
+    let ran = desk.run(&words);
+    let all = format!("{}{}", ran.stdout, ran.stderr);
+    for part in ["planner: prm, the method of Campana and Laumond", "refused by collision", "misses no hop between its contacts"] {
+        assert!(all.contains(part), "{part}: {all}");
+    }
+    let exact = desk.json(&["plan", "room.toml"]);
+    assert!(exact["roadmap"]["planner"] == "exact" && exact["roadmap"].get("sampled_hops").is_none());
+    // A slot narrower than the ball: no angle passes, and the answer says that there are hops all the same.
+    let desk = room(1.0, 1.03);
+    let solved = desk.json(&["plan", "room.toml", "--set", "search.contacts_max=400"]);
+    assert_eq!(solved["verdict"], "traversable");
+    let words = [&PRM[..], &["--set", "search.contacts_max=150"]].concat();
+    let ran = desk.run(&words);
+    assert!(ran.status == 1 && ran.stdout.contains("missed by the sampled angles"), "{ran:?}");
+    let missed: Value = serde_json::from_str(&desk.run(&[&words[..], &["--format", "json"]].concat()).stdout).unwrap();
+    assert!(missed["gap"]["missed_by_sampling"].as_u64().unwrap() > 0);
+    let sampled = &missed["roadmap"]["sampled_hops"];
+    assert!(sampled["refused"].as_u64().unwrap() > 0 && sampled["tried"].as_u64() > sampled["refused"].as_u64(), "{sampled}");
+}
+
+#[test]
+fn what_the_planner_of_the_paper_does_not_obey_is_refused_by_name() {
+    let desk = room(0.8, 1.2);
+    let rows: [(&[&str], &str); 9] = [
+        (&["--set", "search.objective=[\"hops\"]"], "search.objective is another than [\"arc-length\"]"),
+        (&["--set", "search.takeoff_angle=least-time"], "search.takeoff_angle chooses the angle"),
+        (&["--set", "budget.hops_max=9"], "budget.hops_max limits the search"),
+        (&["--set", "hopper.radius_m=0.05"], "hopper.radius_m is the ball that flies"),
+        (&["--set", "hopper.clearance_m=0.05"], "hopper.clearance_m is kept by exact windows"),
+        (&["--set", "hopper.takeoff_speed_levels_m_s=[2, 4]"], "hopper.takeoff_speed_levels_m_s leaves several intervals"),
+        (&["--set", "search.stand_off_m=0.02"], "expected more than 0.02 m, the radius of the ball"),
+        (&["--set", "search.planner=rrt"], "search.planner"),
+        (&["--front", "hops,energy"], "expected planner = \"exact\" for a front"),
+    ];
+    for (options, part) in rows {
+        let ran = desk.run(&[&PRM[..], options].concat());
+        assert!(ran.status == 2 && ran.stderr.contains(part) && ran.stdout.is_empty(), "{options:?}: {ran:?}");
+    }
+}

@@ -9,6 +9,7 @@ mod tiff;
 #[path = "../support/tower.rs"]
 mod tower;
 
+mod ballistic_paper;
 mod ballistics_conflicts;
 mod ballistics_precision;
 mod ballistics_sampling;

@@ -115,7 +115,7 @@ fn toml() -> impl Strategy<Value = String> {
         let in_space = ground == 3 && degrees;
         let kept = |key: &Key| match (key.table, key.name) {
             _ if in_space && is_off_a_mesh(key) => false,
-            ("search", "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => in_space,
+            ("search", "planner" | "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => in_space,
             ("terrain", "dem") => ground == 1,
             ("terrain", "mesh" | "mesh_scale") => ground == 3,
             ("terrain", "start_m" | "goal_m" | "via_m") => (ground == 1 && !degrees) || ground == 3,
@@ -267,7 +267,7 @@ fn every_key_reaches_the_document() {
                 with("terrain", "start_lonlat_deg", "[0, 0]");
                 with("terrain", "goal_lonlat_deg", "[0, 0]");
             }
-            ("search", "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => {
+            ("search", "planner" | "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => {
                 with("terrain", "mesh", "x.obj");
                 with("terrain", "route", "free");
                 with("terrain", "start_m", "[0, 0, 0]");

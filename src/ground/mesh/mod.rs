@@ -15,6 +15,7 @@
 //! are the closed form of what they sample.
 
 mod ball;
+mod beam;
 mod blocked;
 mod contact;
 mod face_surfaces;
@@ -43,7 +44,7 @@ use crate::{
     chain::{ConstraintProblem, FacetGround, facet_constraints},
     quantity::{ChainPoint, FacetId, SlopeInterval},
     terrain::{MeshTree, VerticalPlane},
-    world::{Contact, Derating, FaceGroups, Gravity, Hopper, SurfaceProperties},
+    world::{Derating, FaceGroups, Gravity, Hopper, SurfaceProperties},
 };
 use blocked::BlockedLofts;
 use face_surfaces::{FaceSurface, surfaces};
@@ -173,17 +174,10 @@ impl MeshGround {
             let run_m = away.xy().norm();
             return (run_m > self.tree.resolution_m()).then(|| (LineOfSight::new(run_m, away.z), &[][..]));
         }
-        let course = self.course(takeoff, landing)?;
-        let heading = course.plane.heading;
-        let from = self.limits(takeoff, heading, Contact::Takeoff);
-        let Some((from, to)) = from.and_then(|from| Some((from, self.limits(landing, heading, Contact::Landing)?))) else {
-            return Some((course.sight, &[]));
-        };
-        let lofts = self.envelope.lofts(course.sight, from, to);
-        if lofts.is_empty() || lofts.upper <= 0.0 {
+        let (course, within) = self.beam(takeoff, landing)?;
+        if within.is_empty() {
             return Some((course.sight, &[]));
         }
-        let within = SlopeInterval { lower: lofts.lower.max(0.0), upper: lofts.upper };
         self.block(&course, [takeoff, landing], within, blocked);
         let (speeds, gravity) = (self.envelope.takeoff_speeds(), self.envelope.gravity_m_s2());
         for part in blocked.free_in(within) {

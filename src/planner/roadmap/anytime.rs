@@ -34,11 +34,13 @@ pub enum RoadmapEnd {
     Exhausted,
     /// It was read: only start and goal were added.
     Given,
+    /// Its start leads to its goal, which is all that one that grows contact by contact waits for.
+    Joined,
 }
 
 impl RoadmapEnd {
     /// All reasons.
-    pub const ALL: [Self; 5] = [Self::Contacts, Self::Time, Self::Gain, Self::Exhausted, Self::Given];
+    pub const ALL: [Self; 6] = [Self::Contacts, Self::Time, Self::Gain, Self::Exhausted, Self::Joined, Self::Given];
 
     /// The name in results.
     pub const fn name(self) -> &'static str {
@@ -48,6 +50,7 @@ impl RoadmapEnd {
             Self::Gain => "gain",
             Self::Exhausted => "exhausted",
             Self::Given => "given",
+            Self::Joined => "joined",
         }
     }
 }
@@ -190,7 +193,7 @@ pub fn over_roadmap(
 }
 
 impl GrownRoadmap {
-    fn record(&mut self) {
+    pub(super) fn record(&mut self) {
         self.history.push(RoadmapRound {
             contacts: self.roadmap.contact_count(),
             windows: self.roadmap.window_count(),

@@ -144,6 +144,25 @@ impl Roadmap {
         Ok(())
     }
 
+    /// Adds one contact and windows of hops to it and from it, by their take-offs and landings, those of one hop together and ascending;
+    /// `pairs`: how many ordered pairs were tested for them.
+    pub(super) fn join(&mut self, contact: MeshContact, windows: &[(usize, usize, SlopeInterval)], pairs: u64) {
+        self.graph.add_node(contact);
+        for (from, to, lofts) in windows {
+            self.graph.add_edge(NodeIndex::new(*from), NodeIndex::new(*to), *lofts);
+        }
+        self.pairs_tested += pairs;
+    }
+
+    /// Removes the hops for which a condition on take-off and landing holds. The windows of each hop that stays remain together.
+    pub(super) fn remove_hops(&mut self, is_removed: impl Fn(usize, usize) -> bool) {
+        let kept: Vec<_> = self.all_windows().filter(|(from, to, _)| !is_removed(*from, *to)).collect();
+        self.graph.clear_edges();
+        for (from, to, lofts) in kept {
+            self.graph.add_edge(NodeIndex::new(from), NodeIndex::new(to), lofts);
+        }
+    }
+
     /// The line of sight of a hop.
     pub fn sight(&self, ground: &MeshGround, from: usize, to: usize) -> Option<LineOfSight> {
         Some(ground.course(self.contact(from), self.contact(to))?.sight)

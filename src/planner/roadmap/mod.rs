@@ -14,16 +14,22 @@
 mod anytime;
 mod file;
 mod graph;
+mod join;
+mod kind;
 mod legs;
+mod one_by_one;
 mod route;
 mod sample;
 
 pub use anytime::{GAIN_MIN, GrownRoadmap, RoadmapEnd, RoadmapLimits, RoadmapRound, grow_roadmap, over_roadmap};
 pub use file::RoadmapFileError;
 pub use graph::{Roadmap, RoadmapHop};
+pub use join::{JoinCounts, JoinTest, PROBE_RADIUS_M, PROBE_STAND_OFF_M, PROBE_STEP_M, SAMPLED_SHARES};
+pub use kind::RoadmapPlanner;
 pub use legs::RoadmapLegs;
+pub use one_by_one::{OneByOne, grow_one_by_one};
 pub use route::{RoadmapGap, RoadmapPath, RoadmapQuestion, RoadmapRoute};
-pub use sample::{ContactSampler, DrawnContacts, NothingWithin, SpaceBounds};
+pub use sample::{BY_AREA, ContactSampler, DrawnContacts, NothingWithin, SpaceBounds};
 
 #[cfg(test)]
 pub(crate) mod tests;

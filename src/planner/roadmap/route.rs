@@ -143,6 +143,7 @@ impl Roadmap {
             judged: 0,
             refusals: RefusalCounts::default(),
             vertical: 0,
+            free: 0,
         };
         let mut pair = 0;
         for (number, &from) in reached.iter().enumerate() {
@@ -158,7 +159,7 @@ impl Roadmap {
                     Some(set) => match set.conflict() {
                         Some(MeshConflict::Limits(conflict)) => gap.refusals.count(conflict.counted_under()),
                         Some(MeshConflict::Terrain { .. }) => gap.refusals.count(Limit::Terrain),
-                        None => {}
+                        None => gap.free += 1,
                     },
                 }
             }
@@ -188,6 +189,8 @@ pub struct RoadmapGap {
     pub refusals: RefusalCounts,
     /// How many of them go straight up, which no hop does.
     pub vertical: u64,
+    /// How many of them have a window all the same: a search that samples angles missed them. None in a roadmap of exact windows.
+    pub free: u64,
 }
 
 impl RoadmapGap {

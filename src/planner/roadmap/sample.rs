@@ -47,7 +47,7 @@ pub struct NothingWithin {
 pub struct DrawnContacts {
     /// By area.
     pub by_area: usize,
-    /// On a facet without one.
+    /// On a facet without one, or on one of which each has the same probability.
     pub on_facets: usize,
     /// About the best path.
     pub about_path: usize,
@@ -104,6 +104,9 @@ enum Outcome {
 
 /// So many points are drawn for each contact that is wanted, at most: bounds may hold a small part of large facets.
 const TRIES: usize = 40;
+
+/// The share of contacts drawn one by one that are drawn by area: that of Campana and Laumond's program.
+pub const BY_AREA: f64 = 0.7;
 
 impl<'g> ContactSampler<'g> {
     /// A sampler for the facets within bounds.
@@ -172,6 +175,24 @@ impl<'g> ContactSampler<'g> {
         })
     }
 
+    /// One contact as Campana and Laumond draw them: with the share of [`BY_AREA`] by area, else anywhere on a facet of which each has the
+    /// same probability. `None` where none is found in some thousand tries.
+    pub fn one(&mut self) -> Option<MeshContact> {
+        for _ in 0..TRIES * TRIES {
+            let candidate = if self.source.random::<f64>() < BY_AREA {
+                Candidate::ByArea(self.by_area())
+            } else {
+                let facet = self.facets[below(&mut self.source, self.facets.len())];
+                Candidate::OnFacet(self.within(facet))
+            };
+            let outcome = self.tested(&candidate.point(), &|_| true);
+            if let Some(contact) = self.record(candidate, outcome) {
+                return Some(contact);
+            }
+        }
+        None
+    }
+
     /// So many contacts nearest to points drawn in balls about some points, of those that are useful; fewer where few are found.
     pub fn about(
         &mut self,
@@ -211,22 +232,28 @@ impl<'g> ContactSampler<'g> {
             let tested = |candidate: &Candidate| self.tested(&candidate.point(), is_useful);
             let outcomes: Vec<Outcome> = candidates.par_iter().map(tested).collect();
             for (candidate, outcome) in candidates.iter().zip(outcomes) {
-                match outcome {
-                    Outcome::Buried => self.drawn.buried += 1,
-                    Outcome::Outside => self.drawn.outside += 1,
-                    Outcome::Useless => self.drawn.useless += 1,
-                    Outcome::Contact(contact) => {
-                        match candidate {
-                            Candidate::ByArea(_) => self.drawn.by_area += 1,
-                            Candidate::OnFacet(_) => self.drawn.on_facets += 1,
-                            Candidate::AboutPath(_) => self.drawn.about_path += 1,
-                        }
-                        found.push(contact);
-                    }
-                }
+                found.extend(self.record(*candidate, outcome));
             }
         }
         found
+    }
+
+    /// Counts what became of a point, and gives the contact.
+    fn record(&mut self, candidate: Candidate, outcome: Outcome) -> Option<MeshContact> {
+        match outcome {
+            Outcome::Buried => self.drawn.buried += 1,
+            Outcome::Outside => self.drawn.outside += 1,
+            Outcome::Useless => self.drawn.useless += 1,
+            Outcome::Contact(contact) => {
+                match candidate {
+                    Candidate::ByArea(_) => self.drawn.by_area += 1,
+                    Candidate::OnFacet(_) => self.drawn.on_facets += 1,
+                    Candidate::AboutPath(_) => self.drawn.about_path += 1,
+                }
+                return Some(contact);
+            }
+        }
+        None
     }
 
     fn tested(&self, point: &Point3<f64>, is_useful: &(dyn Fn(&Point3<f64>) -> bool + Sync)) -> Outcome {
@@ -252,7 +279,12 @@ impl<'g> ContactSampler<'g> {
         let whole_m2 = self.area_m2();
         let at_m2 = whole_m2 * self.source.random::<f64>();
         let facet = self.areas_m2.partition_point(|sum_m2| *sum_m2 <= at_m2).min(self.facets.len() - 1);
-        let [a, b, c] = self.ground.tree().corners(self.facets[facet]);
+        self.within(self.facets[facet])
+    }
+
+    /// A point of a facet, each part of the same area with the same probability.
+    fn within(&mut self, facet: FacetId) -> Point3<f64> {
+        let [a, b, c] = self.ground.tree().corners(facet);
         let (mut u, mut v) = (self.source.random::<f64>(), self.source.random::<f64>());
         // The half of the parallelogram beyond the triangle, turned back into it.
         if u + v > 1.0 {

@@ -306,6 +306,19 @@ impl MeshTree {
         NearestOnMesh { point: best.2, facet: best.1, distance_m: best.0.sqrt() }
     }
 
+    /// Whether a triangle of the mesh comes nearer to a point than a distance.
+    pub fn meets_ball(&self, centre: Point3<f64>, radius_m: f64) -> bool {
+        let radius_m2 = radius_m * radius_m;
+        self.walk(
+            |bounds| bounds.squared_distance_m2(centre) < radius_m2,
+            |_, corners| {
+                let is_nearer = (nearest_of_triangle(corners, centre) - centre).norm_squared() < radius_m2;
+                if is_nearer { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            },
+        )
+        .is_break()
+    }
+
     /// The triangles that touch a point of the mesh, within its [resolution](Self::resolution_m), in ascending order.
     pub fn touching(&self, point: Point3<f64>) -> Vec<FacetId> {
         let within_m2 = self.resolution_m * self.resolution_m;
