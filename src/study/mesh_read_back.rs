@@ -30,6 +30,12 @@ pub enum MeshReadBackError {
     /// The result.
     #[error(transparent)]
     Result(#[from] ReadBackError),
+    /// Another path than that of the result.
+    #[error(
+        "the path of this result is not the one that its scenario plans here, expected the same hops: it was changed, or planned by another version, \
+         within another time or over a roadmap that was read"
+    )]
+    OtherPath,
     /// A result without a path.
     #[error("found a result without a path, expected one with hops to fly again: {0} states none")]
     NoPath(String),
@@ -59,16 +65,7 @@ pub fn check_over_mesh(
     document: &Value,
     inputs: &[InputFile],
 ) -> Result<MeshChecked, MeshReadBackError> {
-    let schema = document["schema"].as_str().unwrap_or("no schema").to_owned();
-    if !DocumentKind::of_schema(&schema).is_some_and(|kind| WITH_PATH.contains(&kind)) {
-        return Err(ReadBackError::NoPath { found: schema }.into());
-    }
-    same_inputs(&key::<Vec<InputFile>>(document, "inputs")?, inputs)?;
-    let rows: Vec<HopRecord> = key(document, "path")?;
-    let Some(stated) = key::<Option<u64>>(document, "hops")? else { return Err(MeshReadBackError::NoPath(schema)) };
-    if stated != rows.len() as u64 {
-        return Err(ReadBackError::Hops { stated, listed: rows.len() }.into());
-    }
+    let rows = rows_of(document, inputs)?;
     let MeshEnds { ground, scale, given_m, surface, stood, stand_off_m, mut warnings } =
         mesh_ends(scenario, base, scenario.mesh_search.contacts_stand_off_m())?;
     let hops = rows.iter().map(hop_of).collect::<Result<_, _>>()?;
@@ -84,6 +81,43 @@ pub fn check_over_mesh(
     let violations = execution.violations.iter().map(ViolationRecord::from).collect::<Vec<_>>();
     let answer = MeshCheckAnswer { mesh_scale: scale, start, goal, hops: rows.len(), holds: execution.passes(), violations };
     Ok(MeshChecked { path, answer, warnings })
+}
+
+/// Checks that a plan has the path that a result holds: trials over a mesh replan over the roadmap of a plan, and fly its path.
+///
+/// # Errors
+/// [`MeshReadBackError`]: another path, other input files, or a result without a path.
+pub fn same_path_over_mesh(document: &Value, inputs: &[InputFile], planned: &[HopRecord]) -> Result<(), MeshReadBackError> {
+    let rows = rows_of(document, inputs)?;
+    // Numbers of a document keep their digits but for the last.
+    let close = |(a, b): (f64, f64)| (a - b).abs() <= 1e-9 * (1.0 + b.abs());
+    let same = |(row, hop): (&HopRecord, &HopRecord)| commands(row).into_iter().zip(commands(hop)).all(close);
+    let is_same = rows.len() == planned.len() && rows.iter().zip(planned).all(same);
+    if is_same { Ok(()) } else { Err(MeshReadBackError::OtherPath) }
+}
+
+/// Where a hop begins and ends, and its command.
+fn commands(row: &HopRecord) -> [f64; 8] {
+    let at = row
+        .map
+        .as_ref()
+        .map_or([f64::NAN; 4], |map| [map.takeoff_map_x_m, map.takeoff_map_y_m, map.landing_map_x_m, map.landing_map_y_m]);
+    [row.takeoff_z_m, row.landing_z_m, row.takeoff_angle_deg, row.takeoff_speed_m_s, at[0], at[1], at[2], at[3]]
+}
+
+/// The hops of a result, whose input files have to be those that are read.
+fn rows_of(document: &Value, inputs: &[InputFile]) -> Result<Vec<HopRecord>, MeshReadBackError> {
+    let schema = document["schema"].as_str().unwrap_or("no schema").to_owned();
+    if !DocumentKind::of_schema(&schema).is_some_and(|kind| WITH_PATH.contains(&kind)) {
+        return Err(ReadBackError::NoPath { found: schema }.into());
+    }
+    same_inputs(&key::<Vec<InputFile>>(document, "inputs")?, inputs)?;
+    let rows: Vec<HopRecord> = key(document, "path")?;
+    let Some(stated) = key::<Option<u64>>(document, "hops")? else { return Err(MeshReadBackError::NoPath(schema)) };
+    if stated != rows.len() as u64 {
+        return Err(ReadBackError::Hops { stated, listed: rows.len() }.into());
+    }
+    Ok(rows)
 }
 
 /// A hop from contact to contact, as the result states it.

@@ -301,3 +301,31 @@ fn what_the_planner_of_the_paper_does_not_obey_is_refused_by_name() {
         assert!(ran.status == 2 && ran.stderr.contains(part) && ran.stdout.is_empty(), "{options:?}: {ran:?}");
     }
 }
+
+/// Trials of a result fly its path: another one than its scenario plans, or another mesh, is refused, and planned anew only where that is asked for.
+#[test]
+fn trials_of_a_result_fly_its_path_or_refuse_it() {
+    let desk = room(0.8, 1.2);
+    let planned = desk.json(&["plan", "room.toml"]);
+    desk.write("result.json", planned.to_string());
+    let trials = ["--trials", "50", "--quiet", "--set", "uncertainty.goal_tolerance_m=0.1"];
+    let flown = desk.json(&[&["simulate", "result.json"][..], &trials].concat());
+    assert_eq!(flown["path"], planned["path"]);
+    for (key, factor) in [("takeoff_speed_m_s", 1.05), ("takeoff_angle_deg", 1.01), ("landing_map_x_m", 1.001)] {
+        let mut spoiled = planned.clone();
+        let changed = spoiled["path"][0][key].as_f64().unwrap() * factor;
+        spoiled["path"][0][key] = changed.into();
+        desk.write("spoiled.json", spoiled.to_string());
+        let args = [&["simulate", "spoiled.json"][..], &trials].concat();
+        desk.refused(
+            &args,
+            &["spoiled.json", "is not the one that its scenario plans here", "--plan-anew plans its scenario anew"],
+        );
+        assert_eq!(desk.json(&[&args[..], &["--plan-anew"]].concat())["path"], planned["path"], "{key}");
+    }
+    let faster = [&["simulate", "result.json", "--set", "search.seed=5", "--set", "search.contacts_max=60"][..], &trials].concat();
+    desk.refused(&faster, &["is not the one that its scenario plans here"]);
+    desk.write("room.obj", format!("# another file\n{}", desk.read("room.obj")));
+    desk.refused(&[&["simulate", "result.json"][..], &trials].concat(), &["result.json", "room.obj", "--plan-anew"]);
+    desk.refused(&[&["simulate", "room.toml", "--plan-anew"][..], &trials].concat(), &["--plan-anew", "is no result", "omit it"]);
+}
