@@ -8,6 +8,7 @@ use super::{
     limit_counts::LimitCounts,
     objective_record::AmountRecord,
     propellant_record::PropellantShortage,
+    route_record::isolated_ends,
     text::{Sheet, hops_bound, path_text, place},
 };
 use crate::{
@@ -354,6 +355,9 @@ fn gap_lines(sheet: &mut Sheet, gap: &RoadmapGapRecord) {
         gap.leads_to_goal_contacts,
         point(gap.leads_to_goal_from_m)
     ));
+    if let Some(isolated) = isolated_ends([gap.reached_contacts, gap.leads_to_goal_contacts], "contacts") {
+        sheet.line(format_args!("{isolated}"));
+    }
     match gap.width_m {
         None => sheet.line(format_args!(
             "none of these is as near to a reached contact as one hop by its speeds: the gap is wider than a hop"

@@ -121,6 +121,7 @@ impl RouteRecord {
             gap.leads_to_goal_nodes,
             place(gap.leads_to_goal_from_m)
         ));
+        said.extend(isolated_ends([self.reached_nodes, gap.leads_to_goal_nodes], "nodes"));
         said.push(match gap.width_m {
             None => "none of these is as near to a reached place as one hop by its speeds: the gap is wider than a hop".to_owned(),
             Some(width_m) => {
@@ -141,6 +142,17 @@ impl RouteRecord {
         }
         said
     }
+}
+
+/// Which ends no hop joins to any other place, where so many places are reached from the start and lead to the goal, themselves included.
+pub(super) fn isolated_ends(reached_and_leading: [usize; 2], places: &str) -> Option<String> {
+    let said = match reached_and_leading {
+        [0 | 1, 0 | 1] => "no hop leads away from the start, and none to the goal",
+        [0 | 1, _] => "no hop leads away from the start",
+        [_, 0 | 1] => "no hop leads to the goal",
+        _ => return None,
+    };
+    Some(format!("{said} over these {places}: see first what the ground and the limits allow there"))
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a size for reading")]

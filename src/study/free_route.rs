@@ -340,7 +340,7 @@ fn record(nodes: &SurfaceNodes, route: &FreeRoute, scenario: &Scenario) -> Route
             judged_pairs: gap.judged,
             refusals: (&gap.refusals).into(),
             without_ground: gap.without_ground,
-            keys: gap_keys(gap, scenario),
+            keys: gap_keys(gap, route.work.reached, scenario),
         }),
     }
 }

@@ -4,7 +4,7 @@ use super::{
     Case, FreeRouteError, JourneyError,
     dem_ground::dem_ground,
     free_route::{FoundRoute, FreeSearch, Laid},
-    front::FlownJourney,
+    front::{FlownJourney, RELIABLE},
     journey::Searched,
     objective::reliability,
     to_go::ToGo,
@@ -17,9 +17,6 @@ use crate::{
     progress::Progress,
     report::SuccessBudgetRecord,
 };
-
-/// A route whose trials arrive this often is reliable enough: no other one is looked for.
-const RELIABLE: f64 = 0.98;
 
 /// A free route with the most reliable command of each hop, where the scenario leaves the commands to that, and its cost. Commands that the
 /// search chose stay.
@@ -76,7 +73,7 @@ pub(super) fn route_with_success(case: &Case, progress: &dyn Progress) -> Result
     let enough = least.map_or(RELIABLE, |least| least.min(RELIABLE));
     let mut best = fewest;
     if weighs && has_hops && best.success < enough {
-        for places in ways(&best.route, progress)? {
+        for places in reliable_places(&best.route, progress)? {
             let Some(other) = other_route(&search, &route, &places)? else { continue };
             if scenario.risk == ReliabilityUse::FewestHops && other.found.hops() != hops {
                 continue;
@@ -126,8 +123,8 @@ fn estimated(route: FoundRoute, progress: &dyn Progress) -> Result<Estimated, Jo
 }
 
 /// The places of the most reliable routes about a route.
-fn ways(route: &FoundRoute, progress: &dyn Progress) -> Result<Vec<Vec<MapPosition>>, JourneyError> {
-    with_journey(route, |journey| journey.reliable_ways(&route.found, progress))
+fn reliable_places(route: &FoundRoute, progress: &dyn Progress) -> Result<Vec<Vec<MapPosition>>, JourneyError> {
+    with_journey(route, |journey| journey.reliable_places(&route.found, progress))
 }
 
 /// The route over these places; `None` where one of its hops is not feasible by its slice, or it has no commands.

@@ -318,16 +318,16 @@ impl FlownJourney<'_> {
 
     /// The most reliable paths over the nodes of an answer and places beside its line, by a closed form of the risk of each hop: one for each
     /// kind of places, as the places that it visits.
-    pub(super) fn reliable_ways(
+    pub(super) fn reliable_places(
         &self,
         found: &graph::Answer,
         progress: &dyn Progress,
     ) -> Result<Vec<Vec<MapPosition>>, SimulateError> {
-        let mut ways = Vec::new();
+        let mut places = Vec::new();
         for beside in Beside::ALL {
-            ways.extend(self.corridor(found, beside, progress)?.map(|corridor| corridor.path()));
+            places.extend(self.corridor(found, beside, progress)?.map(|corridor| corridor.path()));
         }
-        Ok(ways)
+        Ok(places)
     }
 
     /// The share of fixed trials of one path that reach the goal, and what they replan by; open loop without `replanning`.
@@ -341,7 +341,6 @@ impl FlownJourney<'_> {
         options: &TrialOptions,
         progress: &dyn Progress,
     ) -> Result<(f64, Option<ToGo>), SimulateError> {
-        const RELIABLE: f64 = 0.98;
         let success = |to_go: Option<&ToGo>| -> Result<f64, SimulateError> {
             Ok(self.simulation(path, to_go)?.estimated_success(options, progress)?)
         };
@@ -450,6 +449,9 @@ impl FlownJourney<'_> {
         generate(self.test, &path.legs, self.scenario.search.takeoff, self.scenario.search.split)
     }
 }
+
+/// The share of trials that arrive from which a path is reliable enough: no robot or route is looked for that arrives more often.
+pub(super) const RELIABLE: f64 = 0.98;
 
 /// The most paths of a front that are flown in trials without a budget: a long journey has dozens, and each of them costs 512 trials.
 const FLOWN_MAX: usize = 9;

@@ -6,10 +6,11 @@ use crate::{
     world::{Grip, Limit, RestSlope},
 };
 
-/// The keys whose limits refuse hops across a gap, the one that refuses most of them first; of a gap wider than a hop the take-off speed.
-pub(super) fn gap_keys(gap: &RouteGap, scenario: &Scenario) -> Vec<String> {
+/// The keys whose limits refuse hops across a gap, the one that refuses most of them first; of a gap wider than a hop the take-off speed, unless
+/// an end by itself has no hop: so many places are reached.
+pub(super) fn gap_keys(gap: &RouteGap, reached: usize, scenario: &Scenario) -> Vec<String> {
     let mut keys: Vec<&str> = Vec::new();
-    if gap.width_m.is_none() {
+    if gap.width_m.is_none() && reached > 1 && gap.leading > 1 {
         keys.push(TAKEOFF_SPEED);
     }
     for (limit, _) in gap.refusals.ranked() {

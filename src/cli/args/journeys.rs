@@ -164,7 +164,7 @@ impl RoadmapArgs {
         let given = [("--roadmap", &self.roadmap), ("--roadmap-output", &self.roadmap_output)];
         match given.into_iter().find(|(_, file)| file.is_some()) {
             Some((option, _)) => Err(Failure::message(format!(
-                "{option}: found this option, which is for free routes over a mesh, and this terrain is none: leave the option out"
+                "{option}: found this option, which is for free routes over a mesh, and this terrain is not a mesh: leave the option out"
             ))),
             None => Ok(()),
         }
