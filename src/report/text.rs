@@ -154,7 +154,7 @@ pub(super) fn choice_lines(sheet: &mut Sheet, best: Option<BestRecord>, choices:
     for choice in choices {
         let chosen = if choice.choice == best.choice { "  <- chosen" } else { "" };
         sheet.line(format_args!(
-            "{:<18}{:>10.4}{:>10.4}{:>11.4}{:>10.4}{:>10.3}{:>13.3}{chosen}",
+            "{:<18}{:>10.4} {:>9.4} {:>10.4} {:>9.4} {:>9.3} {:>12.3}{chosen}",
             choice.choice,
             choice.takeoff_angle_deg,
             choice.takeoff_speed_m_s,
@@ -398,7 +398,7 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
     ));
     for row in rows {
         sheet.line(format_args!(
-            "{:>4} {:<8}{:>12.3}{:>12.3}{:>10.3}{:>10.4}{:>10.3}{:>10.4}{:>9.3}{}{}  {}",
+            "{:>4} {:<8}{:>12.3} {:>11.3} {:>9.3} {:>9.4} {:>9.3} {:>9.4} {:>8.3}{}{}  {}",
             row.hop,
             row.direction,
             row.takeoff_x_m,

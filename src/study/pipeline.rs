@@ -120,8 +120,8 @@ pub enum PipelineError {
     },
     /// A mesh that is not sliced.
     #[error(
-        "terrain.route is \"free\" over a mesh, which plans, runs, trials, maps and comparisons answer, and checks of their results: for any other question give \
-         start_m and goal_m = [x, y] with route = \"transect\", along the upper surface, or a dem"
+        "this question has no answer over a mesh with terrain.route = \"free\", where plans, runs, trials, maps, comparisons, checks of their results and \
+         single hops between two points X,Y,Z have one: give start_m and goal_m = [x, y] with route = \"transect\", along the upper surface, or a dem"
     )]
     NotSliced,
     /// A terrain that is larger than the body it is said to lie on.

@@ -170,24 +170,27 @@ pub(crate) fn contact(ground: &MeshGround, draw: &mut Draw) -> Option<MeshContac
     ground.contact(at).ok()
 }
 
-/// Every arc inside a window flies free, and every arc that other limits allow outside of them hits a facet: over so many random scenes.
-fn compare_with_flown_arcs(seed: u64, scenes: u32) {
-    let draw = &mut Draw::seeded(seed);
-    let (mut free, mut hits, mut several, mut doubtful) = (0, 0, 0, 0);
-    for _ in 0..scenes {
-        let gravity_m_s2 = draw.log_uniform(1e-5, 25.0);
-        let speed_m_s = draw.uniform(0.8, 3.0) * f64::sqrt(10.0 * gravity_m_s2);
-        let friction = draw.log_uniform(0.3, 3.0);
-        let mesh = scene(draw).mesh();
-        let ground = ground(mesh, HopperLimits::with_speeds(speed_m_s, 2.0 * speed_m_s), gravity_m_s2, &surface(friction));
+/// How arcs compared with the windows.
+#[derive(Default)]
+struct Compared {
+    free: u32,
+    hits: u32,
+    several: u32,
+    doubtful: u32,
+}
+
+impl Compared {
+    /// Every arc inside a window flies free, and every arc that other limits allow outside of them hits a facet: of so many pairs of contacts.
+    fn on(&mut self, ground: &MeshGround, draw: &mut Draw, pairs: u32, contact: impl Fn(&mut Draw) -> Option<MeshContact>) {
+        let gravity_m_s2 = ground.envelope().gravity_m_s2();
         let mut buffers = MeshBuffers::default();
-        for _ in 0..30 {
-            let (Some(from), Some(to)) = (contact(&ground, draw), contact(&ground, draw)) else { continue };
+        for _ in 0..pairs {
+            let (Some(from), Some(to)) = (contact(draw), contact(draw)) else { continue };
             let Some(set) = ground.takeoff_set(&from, &to) else { continue };
             let (sight, quick) = ground.windows(&from, &to, &mut buffers).unwrap();
             let slow: Vec<_> = set.windows().iter().map(|window| window.lofts).collect();
             assert_eq!((sight, quick), (set.course().sight, slow.as_slice()));
-            several += u32::from(slow.len() > 1);
+            self.several += u32::from(slow.len() > 1);
             let Ok((all, _)) = limits_but_terrain(&set) else { continue };
             for _ in 0..40 {
                 let share = draw.uniform(0.01, 0.99);
@@ -200,23 +203,67 @@ fn compare_with_flown_arcs(seed: u64, scenes: u32) {
                     .any(|window| (window.lofts.lower - loft).abs() < margin || (window.lofts.upper - loft).abs() < margin);
                 let inside = set.windows().iter().any(|window| window.lofts.contains(loft));
                 let arc = Arc::new(sight, loft, gravity_m_s2);
-                match flown(&ground, &from, &to, &arc, gravity_m_s2) {
+                match flown(ground, &from, &to, &arc, gravity_m_s2) {
                     _ if near_end => {}
-                    Flown::Doubtful => doubtful += 1,
+                    Flown::Doubtful => self.doubtful += 1,
                     Flown::Free => {
-                        free += 1;
+                        self.free += 1;
                         assert!(inside, "{loft} {set:?} {from:?} {to:?}");
                     }
                     Flown::Hits(facet) => {
-                        hits += 1;
+                        self.hits += 1;
                         assert!(!inside, "{loft} hits {facet} {set:?} {from:?} {to:?}");
                     }
                 }
             }
         }
     }
-    eprintln!("{free} free, {hits} hits, {several} pairs with several windows, {doubtful} doubtful");
-    assert!(free > 5 * scenes && hits > 5 * scenes && several > scenes / 10 && doubtful < (free + hits) / 10);
+
+    /// Says how many, and checks that there were enough.
+    fn finish(&self, least: u32) {
+        let Self { free, hits, several, doubtful } = self;
+        eprintln!("{free} free, {hits} hits, {several} pairs with several windows, {doubtful} doubtful");
+        assert!(*free > least && *hits > least && *doubtful < (free + hits) / 10);
+    }
+}
+
+fn compare_with_flown_arcs(seed: u64, scenes: u32) {
+    let draw = &mut Draw::seeded(seed);
+    let mut compared = Compared::default();
+    for _ in 0..scenes {
+        let gravity_m_s2 = draw.log_uniform(1e-5, 25.0);
+        let speed_m_s = draw.uniform(0.8, 3.0) * f64::sqrt(10.0 * gravity_m_s2);
+        let friction = draw.log_uniform(0.3, 3.0);
+        let mesh = scene(draw).mesh();
+        let ground = ground(mesh, HopperLimits::with_speeds(speed_m_s, 2.0 * speed_m_s), gravity_m_s2, &surface(friction));
+        compared.on(&ground, draw, 30, |draw| contact(&ground, draw));
+    }
+    compared.finish(5 * scenes);
+    assert!(compared.several > scenes / 10, "{} with several windows", compared.several);
+}
+
+/// The published meshes, whose small facets meet at all angles: contacts in the middles of facets that are near to one another.
+#[test]
+fn windows_over_published_meshes_are_the_arcs_that_fly_free() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/mesh");
+    for (file, speed_m_s, pairs) in
+        [("scene_jump10.stl", 7.0, 4000), ("cave_mono_short_1.stl", 4.5, 80), ("envir3d_1.stl", 6.8, 80)]
+    {
+        let path = folder.join(file);
+        if !path.exists() {
+            eprintln!("skipped: {} is absent", path.display());
+            continue;
+        }
+        let mesh = chta::terrain::read_mesh(&path, 1.0).unwrap().mesh;
+        let middles: Vec<Point3<f64>> = mesh
+            .triangles()
+            .map(|corners| Point3::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0))
+            .collect();
+        let ground = ground(mesh, HopperLimits::with_speeds(speed_m_s, speed_m_s), 9.81, &surface(1.2));
+        let mut compared = Compared::default();
+        compared.on(&ground, &mut Draw::seeded(1808), pairs, |draw| ground.contact(middles[draw.below(middles.len())]).ok());
+        compared.finish(50);
+    }
 }
 
 #[test]
