@@ -36,9 +36,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
         let size = route_size(&loaded.case)?;
         return output::sized(&loaded.record.document(DocumentKind::Size, &[], size), args.answer.format);
     }
-    if args.geojson.is_some() {
-        loaded.check_on_map("--geojson")?;
-    }
+    args.geojson.is_some().then(|| loaded.check_on_map("--geojson")).transpose()?;
     // Outputs are opened before the search, which may take long.
     let plot = args.view.begin_picture(args.plot.as_deref())?;
     let plot_front = output::begin_picture("--plot-front", args.plot_front.as_deref())?;

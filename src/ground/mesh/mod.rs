@@ -168,12 +168,6 @@ impl MeshGround {
     ) -> Option<(LineOfSight, &'a [SlopeInterval])> {
         let MeshBuffers { blocked, free } = buffers;
         free.clear();
-        // Most pairs of a roadmap end here.
-        let away = landing.point_m() - takeoff.point_m();
-        if !self.speed_bounds.span(away.norm(), away.z) {
-            let run_m = away.xy().norm();
-            return (run_m > self.tree.resolution_m()).then(|| (LineOfSight::new(run_m, away.z), &[][..]));
-        }
         let (course, within) = self.beam(takeoff, landing)?;
         if within.is_empty() {
             return Some((course.sight, &[]));

@@ -1,21 +1,17 @@
 //! `chta simulate` over a mesh.
 
-use std::fs;
-
 use chta::{
-    report::{DocumentKind, HopRecord, mesh_simulate_text},
-    study::{MeshRouteQuestion, mesh_route, same_path_over_mesh, simulate_over_mesh},
+    report::{DocumentKind, mesh_simulate_text},
+    study::{MeshRouteQuestion, mesh_route, simulate_over_mesh},
 };
 
 use crate::cli::{
     Answer, Failure,
     args::SimulateArgs,
-    inputs,
-    load::{MeshPlanInput, refused_result},
+    load::{MeshPlanInput, check_result_over_mesh},
     output::{self, Pending},
     progress::Progress,
     views::{Files, show},
-    wrong_thing::Role,
 };
 
 /// Simulates a free route over a mesh.
@@ -37,7 +33,7 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
     let progress = Progress::new(args.common.quiet);
     let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: None, roadmap: None };
     let routed = mesh_route(&question, &progress).map_err(|error| Failure::about(&input.mesh, &error))?;
-    plan_of_result(args, &routed.answer.path, input)?;
+    check_result_over_mesh(args, input, &routed.answer.path)?;
     let simulated =
         simulate_over_mesh(routed, &input.scenario, &args.options(), &mut (), &progress).map_err(|error| about(&error))?;
     output::warn_all(args.common.quiet, &simulated.warnings);
@@ -52,17 +48,4 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
         || input.document(DocumentKind::SimulateMesh, &simulated.warnings, answer),
     )?;
     Ok(Answer::of(answer.plan.is_traversable() && answer.shows_success()))
-}
-
-/// Refuses a result whose path is not the one that was planned, unless the options say that it is to be planned anew.
-fn plan_of_result(args: &SimulateArgs, planned: &[HopRecord], input: &MeshPlanInput) -> Result<(), Failure> {
-    let file = inputs::open(&args.journey.chain, Role::Chain)?;
-    args.check_plan_anew(&file)?;
-    if args.plan_anew || !file.is_result() {
-        return Ok(());
-    }
-    let refused = |error: &dyn std::error::Error| refused_result(&file, error);
-    let text = fs::read(&file.file).map_err(|error| refused(&error))?;
-    let document = serde_json::from_slice(&text).map_err(|error| refused(&error))?;
-    same_path_over_mesh(&document, input.inputs(), planned).map_err(|error| refused(&error))
 }
