@@ -30,6 +30,7 @@ takeoff_speed_max_m_s = {speed}
 landing_speed_max_m_s = {speed}
 [surface]
 friction_coefficient = {friction}
+rest_slope_max_deg = inf
 [terrain]
 mesh = "{mesh}"
 route = "free"

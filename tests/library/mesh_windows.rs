@@ -189,7 +189,8 @@ impl Compared {
             let Some(set) = ground.takeoff_set(&from, &to) else { continue };
             let (sight, quick) = ground.windows(&from, &to, &mut buffers).unwrap();
             let slow: Vec<_> = set.windows().iter().map(|window| window.lofts).collect();
-            assert_eq!((sight, quick), (set.course().sight, slow.as_slice()));
+            assert_eq!(quick, slow.as_slice());
+            assert!(slow.is_empty() || sight == set.course().sight);
             self.several += u32::from(slow.len() > 1);
             let Ok((all, _)) = limits_but_terrain(&set) else { continue };
             for _ in 0..40 {
@@ -202,7 +203,7 @@ impl Compared {
                     .iter()
                     .any(|window| (window.lofts.lower - loft).abs() < margin || (window.lofts.upper - loft).abs() < margin);
                 let inside = set.windows().iter().any(|window| window.lofts.contains(loft));
-                let arc = Arc::new(sight, loft, gravity_m_s2);
+                let arc = Arc::new(set.course().sight, loft, gravity_m_s2);
                 match flown(ground, &from, &to, &arc, gravity_m_s2) {
                     _ if near_end => {}
                     Flown::Doubtful => self.doubtful += 1,

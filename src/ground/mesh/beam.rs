@@ -15,10 +15,6 @@ impl MeshGround {
     #[inline]
     pub fn beam(&self, takeoff: &MeshContact, landing: &MeshContact) -> Option<(MeshCourse, SlopeInterval)> {
         let course = self.course(takeoff, landing)?;
-        // Most pairs of a roadmap end here.
-        if !self.speed_bounds().span(course.sight.length_m(), course.sight.rise_m()) {
-            return Some((course, SlopeInterval::EMPTY));
-        }
         let heading = course.plane.heading;
         let from = self.limits(takeoff, heading, Contact::Takeoff);
         let Some((from, to)) = from.and_then(|from| Some((from, self.limits(landing, heading, Contact::Landing)?))) else {

@@ -159,7 +159,8 @@ impl MeshGround {
     /// The feasible windows of one hop, as lofts over its line of sight, ascending and disjoint; none if no arc is feasible, and `None`
     /// for a vertical hop.
     ///
-    /// The limits that need no terrain are tested first; the cut ends as soon as nothing is left.
+    /// The limits that need no terrain are tested first, the greatest speeds before all others; the cut ends as soon as nothing is left. Without
+    /// windows the line of sight may differ from that of the [`course`](Self::course) in its last bits.
     pub fn windows<'a>(
         &self,
         takeoff: &MeshContact,
@@ -168,6 +169,12 @@ impl MeshGround {
     ) -> Option<(LineOfSight, &'a [SlopeInterval])> {
         let MeshBuffers { blocked, free } = buffers;
         free.clear();
+        // Most pairs of a roadmap end here.
+        let away = landing.point_m() - takeoff.point_m();
+        if !self.speed_bounds.span(away.norm(), away.z) {
+            let run_m = away.xy().norm();
+            return (run_m > self.tree.resolution_m()).then(|| (LineOfSight::new(run_m, away.z), &[][..]));
+        }
         let (course, within) = self.beam(takeoff, landing)?;
         if within.is_empty() {
             return Some((course.sight, &[]));
