@@ -18,7 +18,7 @@ CHTA = "target/release/chta"
 SECONDS = (1, 5)
 SEEDS = (1, 2, 3)
 # Contacts of the roadmap that OMPL searches, and of chta's own plans.
-TABLE_CONTACTS = 12000
+TABLE_CONTACTS = 8000
 CONTACTS = (250, 500, 1000, 2000, 4000)
 PROBLEMS = ((1.2, 7.0), (0.5, 7.0))
 GRAVITY_M_S2 = 9.81
@@ -129,7 +129,7 @@ def compare(friction, speed):
         solved = [(answer, wall_s) for answer, wall_s in answers if answer["totals"]]
         if not solved:
             continue
-        length_m = mean([answer["totals"]["arc_length_m"] for answer, _ in solved])
+        length_m = mean([answer["roadmap"]["history"][-1]["totals"][0]["total"] for answer, _ in solved])
         hops, wall_s = mean([answer["hops"] for answer, _ in solved]), mean([wall_s for _, wall_s in solved])
         rows.append((problem, f"chta, {contacts} contacts", f"{wall_s:.2f} s", f"{len(solved)}/{len(answers)}", f"{length_m:.1f}", f"{hops:.1f}"))
         if as_short is None and best is not None and len(solved) == len(answers) and length_m <= best[0]:
