@@ -296,12 +296,11 @@ impl FlownJourney<'_> {
         progress: &dyn Progress,
     ) -> Result<Option<ToGo>, SimulateError> {
         let slot = &replanning.beside[beside as usize];
-        let corridor = match slot.get() {
-            Some(known) => known,
-            None => {
-                let corridor = self.corridor(found, beside, progress)?;
-                slot.get_or_init(|| corridor)
-            }
+        let corridor = if let Some(known) = slot.get() {
+            known
+        } else {
+            let corridor = self.corridor(found, beside, progress)?;
+            slot.get_or_init(|| corridor)
         };
         let corridor = corridor.as_ref();
         Ok(corridor
