@@ -33,7 +33,7 @@ use crate::{
 /// What is asked.
 #[derive(Clone, Debug)]
 pub struct MeshRouteQuestion<'a> {
-    /// The scenario, with [`TerrainSource::MeshInSpace`].
+    /// The scenario, with [`TerrainSource::MeshInSpace`](crate::scenario::TerrainSource::MeshInSpace).
     pub scenario: &'a Scenario,
     /// The folder that its paths start from.
     pub base: &'a Path,
