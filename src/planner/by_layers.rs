@@ -5,7 +5,7 @@
 //! Of the hops to a node the one that takes least by its lower bound is computed first, and others only while their bounds are below what
 //! is known.
 
-use std::{cmp::Ordering, collections::BinaryHeap};
+use std::collections::BinaryHeap;
 
 use rayon::prelude::*;
 
@@ -13,7 +13,7 @@ use super::{
     Amounts, LabelCap, Objective, PathStep, SearchResult, SurfaceLegs, SurfaceNode,
     fewest_hops::{FewestHops, nodes_beside},
     labels::{NONE, by_objective},
-    search::path_along,
+    search::{Waiting, path_along},
     surface_hops::Side,
     surface_legs::LegOffers,
 };
@@ -35,27 +35,6 @@ struct Label {
     before: u32,
     /// The command of the last hop.
     command: u32,
-}
-
-/// A hop to a node that is not computed yet, from a label of the layer before: the least first.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Waiting {
-    least: Key,
-    before: u32,
-}
-
-impl Eq for Waiting {}
-
-impl PartialOrd for Waiting {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Waiting {
-    fn cmp(&self, other: &Self) -> Ordering {
-        by_objective(&other.least, &self.least).then(other.before.cmp(&self.before))
-    }
 }
 
 /// The labels of all layers so far.
@@ -142,12 +121,14 @@ impl Layers<'_> {
             let before = self.of_node[known.index()];
             let Some(label) = self.labels.get(before as usize).filter(|_| before as usize >= self.last) else { continue };
             if let Some((sight, _)) = surface.sight(&label.at, &at) {
-                heap.push(Waiting { least: self.extended(&label.key, &self.offers.least.of_hop(sight)), before });
+                let key = self.extended(&label.key, &self.offers.least.of_hop(sight));
+                heap.push(Waiting { key, node: label.node.0, label: before });
             }
         }
         let mut heap = BinaryHeap::from(heap);
         let (mut best, mut pairs): (Option<Label>, u64) = (None, 0);
-        while let Some(Waiting { least, before }) = heap.pop() {
+        // A hop that is not computed yet waits under what it takes at least.
+        while let Some(Waiting { key: least, label: before, .. }) = heap.pop() {
             if best.is_some_and(|best| by_objective(&least, &best.key).is_ge()) {
                 break;
             }

@@ -120,10 +120,10 @@ pub struct SearchResult {
 
 /// A label that waits, the best first; of equals the one of the lower node, then the older one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Waiting {
-    key: [f64; Objective::MOST],
-    node: u32,
-    label: u32,
+pub(super) struct Waiting {
+    pub(super) key: [f64; Objective::MOST],
+    pub(super) node: u32,
+    pub(super) label: u32,
 }
 
 impl Eq for Waiting {}
