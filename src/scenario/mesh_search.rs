@@ -1,9 +1,11 @@
 //! How a free route over a mesh is searched.
 
+use std::time::Duration;
+
 use nalgebra::Point3;
 
 use super::{Entries, ProblemKind, TerrainSource};
-use crate::planner::roadmap::{PROBE_STAND_OFF_M, RoadmapPlanner, SpaceBounds};
+use crate::planner::roadmap::{PROBE_STAND_OFF_M, RoadmapLimits, RoadmapPlanner, SpaceBounds};
 
 /// The keys of a search over a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -26,9 +28,12 @@ impl MeshSearch {
     /// The most contacts where the scenario gives no number: seconds on scenes of some ten thousand facets.
     pub const CONTACTS: usize = 4000;
 
-    /// The most contacts of the roadmap.
-    pub fn contacts(&self) -> usize {
-        self.contacts_max.map_or(Self::CONTACTS, |most| most as usize)
+    /// When the roadmap stops growing.
+    pub fn limits(&self) -> RoadmapLimits {
+        RoadmapLimits {
+            contacts_max: self.contacts_max.map_or(Self::CONTACTS, |most| most as usize),
+            time_max: self.time_max_s.map(|time_s| Duration::try_from_secs_f64(time_s).unwrap_or(Duration::MAX)),
+        }
     }
 
     /// How far contacts stand off the surface, m: as given, else what the planner takes.

@@ -15,7 +15,7 @@ use super::{
 use crate::{
     ballistics::{PathBounds, TakeoffChoice},
     chain::Station,
-    graph::{self, Edge, Leg, NodeSet, Outcome, PointSpacing, RefusalCounts, SearchError},
+    graph::{self, Edge, Leg, NodeSet, Outcome, PointSpacing, RefusalCounts, ReliabilityUse, SearchError},
     ground::{ContactPoint, DemGround, MapPosition, Surface},
     hop::HopTest,
     path::{Execution, Hop, HopPath, execute},
@@ -282,6 +282,12 @@ pub(super) struct Unrolled {
 /// What a free route leaves out of a scenario.
 pub(super) fn left_out(scenario: &Scenario) -> Vec<String> {
     let mut warnings = Vec::new();
+    if scenario.uncertainty.is_none() && scenario.risk != ReliabilityUse::Ignored {
+        warnings.push(format!(
+            "search.risk = \"{}\" is without effect on a free route, which has no [uncertainty]: its reliability is that of trials under errors",
+            scenario.risk.name()
+        ));
+    }
     if !scenario.hopper.limits().steps.is_continuous() {
         warnings.push(
             "a free route and its trials have exact commands, and this machine takes its commands in steps, which may miss a landing or \

@@ -68,20 +68,20 @@ pub(super) fn route_with_success(case: &Case, progress: &dyn Progress) -> Result
         let searched = Searched::of(found.found.clone());
         return Ok((found, searched));
     }
-    let fewest = estimated(found, progress)?;
-    let hops = fewest.route.found.hops();
+    let mut best = estimated(found, progress)?;
+    let hops = best.route.found.hops();
     let enough = least.map_or(RELIABLE, |least| least.min(RELIABLE));
-    let mut best = fewest;
-    if weighs && has_hops && best.success < enough {
-        for places in reliable_places(&best.route, progress)? {
-            let Some(other) = other_route(&search, &route, &places)? else { continue };
-            if scenario.risk == ReliabilityUse::FewestHops && other.found.hops() != hops {
-                continue;
-            }
-            let other = estimated(other, progress)?;
-            if other.success > best.success {
-                best = other;
-            }
+    let looks_on = weighs && has_hops && best.success < enough;
+    let mut is_other = false;
+    let others = if looks_on { reliable_places(&best.route, progress)? } else { Vec::new() };
+    for places in &others {
+        let Some(other) = other_route(&search, &route, places)? else { continue };
+        if scenario.risk == ReliabilityUse::FewestHops && other.found.hops() != hops {
+            continue;
+        }
+        let other = estimated(other, progress)?;
+        if other.success > best.success {
+            (best, is_other) = (other, true);
         }
     }
     let Estimated { mut route, success, to_go } = best;
@@ -91,9 +91,16 @@ pub(super) fn route_with_success(case: &Case, progress: &dyn Progress) -> Result
              often; with search.risk = \"ignored\" that one is planned",
             hops.unwrap_or(0)
         ));
+    } else if looks_on && !is_other {
+        let why = if others.is_empty() {
+            "no other one was looked at: the posts of the DEM are too far apart for its hops, or there are too many places beside it"
+        } else {
+            "none over places beside it arrives more often; detours farther away were not looked at"
+        };
+        route.warnings.push(format!("{:.0} % of the fixed trials arrive by this route, and {why}", 100.0 * success));
     }
     let mut searched = Searched::of(route.found.clone());
-    searched.to_go = to_go;
+    (searched.flown, searched.to_go) = (Some(success), to_go);
     if let Some((least, path)) = least.zip(route.path.as_ref()) {
         let record = SuccessBudgetRecord::new(least, success >= least, Some((path.hops.len() as u64, success)));
         searched.success = Some(record);

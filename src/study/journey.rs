@@ -81,6 +81,8 @@ pub(super) struct Searched {
     pub(super) objective: Option<ObjectiveRecord>,
     /// What is to be known about a plan by objective.
     pub(super) warnings: Vec<String>,
+    /// The share of the fixed trials of the path that arrive, where the choice of the path found it and no front has it.
+    pub(super) flown: Option<f64>,
     /// What trials of the path replan by, where the choice of the path found it.
     pub(super) to_go: Option<ToGo>,
     /// The bounds, and the budget of cells.
@@ -132,7 +134,16 @@ impl Searched {
 
     /// The answer of a search that does not weigh reliability.
     pub(super) const fn of(found: graph::Answer) -> Self {
-        Self { found, reliable_paths: Vec::new(), success: None, objective: None, warnings: Vec::new(), to_go: None, proof: None }
+        Self {
+            found,
+            reliable_paths: Vec::new(),
+            success: None,
+            objective: None,
+            warnings: Vec::new(),
+            flown: None,
+            to_go: None,
+            proof: None,
+        }
     }
 
     /// How reliably the path of the answer is flown, under the policy of the scenario, and how its hops scatter; `None` without errors.
@@ -150,7 +161,7 @@ impl Searched {
         let Some(keys) = scenario.uncertainty.as_ref().filter(|keys| !keys.errors.is_none()) else { return Ok(None) };
         let hops = self.found.hops();
         let of_front = self.reliable_paths.iter().find(|path| Some(path.cost.hops()) == hops).and_then(|path| path.success);
-        let known = of_front.or_else(|| self.success.filter(|success| success.hops == hops)?.success_estimated);
+        let known = of_front.or(self.flown).or_else(|| self.success.filter(|success| success.hops == hops)?.success_estimated);
         let ground = dem_ground(case).map_err(Box::new)?;
         let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
         let (success_estimated, to_go) = match known {

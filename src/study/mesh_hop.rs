@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::Point3;
 
-use super::{Extent, Extremes, TooLarge, constant_gravity_warnings, mesh_flaws::flaw_warnings, physics::check_extent};
+use super::{
+    Extent, Extremes, TooLarge, constant_gravity_warnings, mesh_flaws::flaw_warnings, nodes::level_hop_of_m, physics::check_extent,
+};
 #[cfg(feature = "plot")]
 use super::{captions::title, conditions};
 use crate::{
@@ -135,7 +137,8 @@ pub(super) fn on_mesh(
     warnings: &mut Vec<String>,
 ) -> Result<MeshContact, MeshHopError> {
     let contact = ground.contact(at).map_err(|problem| MeshHopError::NoContact { end, problem })?;
-    let (size_m, hop_m) = (ground.tree().mesh().bounds().size_m(), ground.level_hop_m());
+    let (size_m, envelope) = (ground.tree().mesh().bounds().size_m(), ground.envelope());
+    let hop_m = level_hop_of_m(envelope.hopper(), envelope.gravity_m_s2());
     if contact.moved_m() > FAR * size_m.min(hop_m) {
         warnings.push(format!(
             "the {end} was moved {} m to the surface of a mesh that measures {} m and over which one level hop spans {} m: the answer is for the \

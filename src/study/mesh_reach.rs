@@ -1,6 +1,6 @@
 //! What is reached over a mesh in how few hops, and from where the start is reached again.
 
-use std::{io, path::Path, time::Duration};
+use std::{io, path::Path};
 
 use super::{
     MeshRouteError,
@@ -12,7 +12,7 @@ use super::{captions::title, conditions};
 use crate::figure::{Caption, FigureError, MeshReachFigure, Picture, ReachedContact, SeenFrom, draw_mesh_reach};
 use crate::{
     ground::{MeshContact, MeshGround},
-    planner::roadmap::{ContactSampler, DrawnContacts, RoadmapEnd, RoadmapLimits},
+    planner::roadmap::{ContactSampler, DrawnContacts, RoadmapEnd},
     progress::Progress,
     reach::contacts::{Spread, SpreadQuestion, SpreadRound, spread},
     report::{
@@ -65,16 +65,12 @@ pub fn mesh_reach(question: &MeshReachQuestion<'_>, progress: &dyn Progress) -> 
     let mut ends = mesh_ends(scenario, question.base, scenario.mesh_search.stand_off_m.unwrap_or(0.0))?;
     let search = &scenario.mesh_search;
     let [start, goal] = ends.stood.clone();
-    let is_there = (goal.point_m() - start.point_m()).norm() <= ends.ground.tree().resolution_m();
+    let is_there = ends.ground.are_one_place([&start, &goal]);
     let given = if is_there { vec![start] } else { vec![start, goal] };
-    let limits = RoadmapLimits {
-        contacts_max: search.contacts(),
-        time_max: search.time_max_s.map(|time_s| Duration::try_from_secs_f64(time_s).unwrap_or(Duration::MAX)),
-    };
     let asked = SpreadQuestion { hops_max: question.hops_max, returns: question.returns };
     let ground = ends.ground.clone();
     let mut sampler = ContactSampler::new(&ground, search.bounds, ends.stand_off_m, search.seed.unwrap_or(0))?;
-    let spread = spread(&ground, given, &mut sampler, asked, limits, progress)?;
+    let spread = spread(&ground, given, &mut sampler, asked, search.limits(), progress)?;
     let areas = ContactAreas::of(&ground, &spread.contacts);
     let facets = (sampler.facet_count(), sampler.area_m2());
     let goal = usize::from(!is_there);

@@ -72,7 +72,7 @@ pub fn check_over_mesh(
     let path = HopPath::of_hops(hops, ground.envelope().hopper());
     // Start and goal that are one contact need no hop, wherever they were asked for within its resolution.
     let [start, mut goal] = [0, 1].map(|i| MeshPosition::from(&stood[i]));
-    if path.hops.is_empty() && (goal.point_m - start.point_m).norm() <= ground.tree().resolution_m() {
+    if path.hops.is_empty() && ground.are_one_place([&stood[0], &stood[1]]) {
         goal = start;
     }
     let execution = execute_over_mesh(&ground.clone().standing_off(stand_off_m), &path, Some((start, goal)));
@@ -83,17 +83,31 @@ pub fn check_over_mesh(
     Ok(MeshChecked { path, answer, warnings })
 }
 
-/// Checks that a plan has the path that a result holds: trials over a mesh replan over the roadmap of a plan, and fly its path.
-///
-/// # Errors
-/// [`MeshReadBackError`]: another path, other input files, or a result without a path.
-pub fn same_path_over_mesh(document: &Value, inputs: &[InputFile], planned: &[HopRecord]) -> Result<(), MeshReadBackError> {
-    let rows = rows_of(document, inputs)?;
-    // Numbers of a document keep their digits but for the last.
-    let close = |(a, b): (f64, f64)| (a - b).abs() <= 1e-9 * (1.0 + b.abs());
-    let same = |(row, hop): (&HopRecord, &HopRecord)| commands(row).into_iter().zip(commands(hop)).all(close);
-    let is_same = rows.len() == planned.len() && rows.iter().zip(planned).all(same);
-    if is_same { Ok(()) } else { Err(MeshReadBackError::OtherPath) }
+/// The path over a mesh that a result holds. Trials over a mesh replan over the roadmap of a plan, and fly its path: the plan has to have this
+/// one.
+#[derive(Clone, Debug)]
+pub struct MeshResultPath(Vec<HopRecord>);
+
+impl MeshResultPath {
+    /// Reads it from a result, whose input files have to be those that are read.
+    ///
+    /// # Errors
+    /// [`MeshReadBackError`]: other input files, or a result without a path.
+    pub fn read(document: &Value, inputs: &[InputFile]) -> Result<Self, MeshReadBackError> {
+        rows_of(document, inputs).map(Self)
+    }
+
+    /// Checks that a plan has this path.
+    ///
+    /// # Errors
+    /// [`MeshReadBackError::OtherPath`].
+    pub fn check_planned(&self, planned: &[HopRecord]) -> Result<(), MeshReadBackError> {
+        // Numbers of a document keep their digits but for the last.
+        let close = |(a, b): (f64, f64)| (a - b).abs() <= 1e-9 * (1.0 + b.abs());
+        let same = |(row, hop): (&HopRecord, &HopRecord)| commands(row).into_iter().zip(commands(hop)).all(close);
+        let is_same = self.0.len() == planned.len() && self.0.iter().zip(planned).all(same);
+        if is_same { Ok(()) } else { Err(MeshReadBackError::OtherPath) }
+    }
 }
 
 /// Where a hop begins and ends, and its command.

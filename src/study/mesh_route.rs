@@ -1,6 +1,6 @@
 //! A free route over a mesh: through caves, under overhangs, up and down walls.
 
-use std::{fs::File, io::BufReader, path::Path, time::Duration};
+use std::{fs::File, io::BufReader, path::Path};
 
 use nalgebra::Point3;
 
@@ -156,32 +156,38 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
         takeoff: scenario.search.takeoff,
         cap: LabelCap::default(),
     };
-    let contacts_max = search.contacts();
-    let time_max = search.time_max_s.map(|time_s| Duration::try_from_secs_f64(time_s).unwrap_or(Duration::MAX));
+    let limits = search.limits();
     let (grown, joined) = match (question.roadmap, search.planner) {
         (Some(file), _) => {
             let read = File::open(file).map_err(MeshRouteError::NoRoadmap)?;
             let roadmap = Roadmap::read_json(&ground, BufReader::new(read))?;
             (over_roadmap(&ground, roadmap, ends, &asked, progress)?, None)
         }
-        (None, RoadmapPlanner::Exact) => {
-            let limits = RoadmapLimits { contacts_max, time_max };
-            (grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?, None)
-        }
+        (None, RoadmapPlanner::Exact) => (grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?, None),
         (None, RoadmapPlanner::Prm) => {
             let height_max_m = search.bounds.map(|bounds| bounds.max.z);
+            let RoadmapLimits { contacts_max, time_max } = limits;
             let scheme = OneByOne { test: JoinTest::SampledAngles, height_max_m, contacts_max, time_max };
             let (grown, joined) = grow_one_by_one(&ground, ends, &mut sampler, &asked, scheme, progress)?;
             (grown, Some(joined))
         }
     };
     let facets = [sampler.facet_count(), sampler.turned()];
-    let path = grown.route.path.as_ref().map(|found| hops_of_path(&ground, &grown, found)).transpose()?;
-    path.as_ref().map(|path| flown_again(&ground, &grown, stand_off_m, path)).transpose()?;
+    // Windows that were read may not be those of the mesh.
+    let of_file = |error: MeshRouteError| match error {
+        MeshRouteError::Lost | MeshRouteError::Defect(_) if question.roadmap.is_some() => RoadmapFileError::Hop.into(),
+        other => other,
+    };
+    let path = grown.route.path.as_ref().map(|found| hops_of_path(&ground, &grown, found)).transpose().map_err(of_file)?;
+    path.as_ref()
+        .map(|path| flown_again(&ground, &grown, stand_off_m, path))
+        .transpose()
+        .map_err(|defect| of_file(defect.into()))?;
     warnings.extend(path.iter().flat_map(|path| scenario.path_warnings(path)));
     warnings.extend(left_out(scenario, &grown, facets));
     let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends, progress)).transpose()?;
-    let front = question.front.map(|front| front_of(scenario, &ground, &grown, (front.amount(), path.as_ref()))).transpose()?;
+    let front = question.front.map(|front| front_of(scenario, &ground, &grown, (front.amount(), path.as_ref())));
+    let front = front.transpose().map_err(of_file)?;
     let mut answer = answer((scenario, &ground), (given_m, &surface, scale), (&grown, facets), (path.as_ref(), gap.as_ref()));
     if let Some(joined) = &joined {
         answer.roadmap.planner = RoadmapPlanner::Prm;
@@ -265,16 +271,22 @@ fn answer(
 /// What the plan leaves out of a scenario, and what its contacts leave out of the mesh.
 fn left_out(scenario: &Scenario, grown: &GrownRoadmap, [facets, turned]: [usize; 2]) -> Vec<String> {
     let mut warnings = Vec::new();
-    let search = &scenario.mesh_search;
-    let drawing = [
-        ("search.planner", search.planner == RoadmapPlanner::Prm),
-        ("search.contacts_max", search.contacts_max.is_some()),
-        ("search.time_max_s", search.time_max_s.is_some()),
-        ("search.seed", search.seed.is_some()),
-    ];
-    let unused: Vec<&str> = drawing.iter().filter(|(_, is_given)| *is_given).map(|(key, _)| *key).collect();
-    if grown.end == RoadmapEnd::Given && !unused.is_empty() {
-        warnings.push(format!("{}: without effect, since the contacts of the roadmap read stand as they are", unused.join(", ")));
+    if grown.end == RoadmapEnd::Given {
+        let search = &scenario.mesh_search;
+        let drawing = [
+            ("search.planner", search.planner == RoadmapPlanner::Prm),
+            ("search.contacts_max", search.contacts_max.is_some()),
+            ("search.time_max_s", search.time_max_s.is_some()),
+            ("search.seed", search.seed.is_some()),
+        ];
+        let unused: Vec<&str> = drawing.iter().filter(|(_, is_given)| *is_given).map(|(key, _)| *key).collect();
+        if !unused.is_empty() {
+            warnings
+                .push(format!("{}: without effect, since the contacts of the roadmap read stand as they are", unused.join(", ")));
+        }
+        warnings.push(
+            "a result of this plan does not hold the roadmap that was read: planned again without it, its scenario draws other contacts".to_owned(),
+        );
     }
     if scenario.uncertainty.is_some() {
         warnings.push(

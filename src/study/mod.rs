@@ -88,7 +88,7 @@ pub use measured::with_measured_errors;
 pub use mesh_compare::{MeshCompared, MeshComparison};
 pub use mesh_hop::{MeshHopError, MeshHopQuestion, MeshHopped, mesh_hop};
 pub use mesh_reach::{MeshReachQuestion, MeshReached, mesh_reach};
-pub use mesh_read_back::{MeshChecked, MeshReadBackError, check_over_mesh, same_path_over_mesh};
+pub use mesh_read_back::{MeshChecked, MeshReadBackError, MeshResultPath, check_over_mesh};
 pub use mesh_route::{MeshRouteError, MeshRouteQuestion, MeshRouted, mesh_route};
 pub use mesh_trials::{MeshSimulated, MeshTrialsError, simulate_over_mesh};
 pub use on_body::{OfBody, dem_on_body, on_body};

@@ -228,6 +228,7 @@ fn a_roadmap_is_read_back_for_other_ends() {
     let text = desk.run(&["plan", "room.toml", "--roadmap", "roadmap.json"]);
     assert!(text.stdout.contains("start and goal added to those read"), "{}", text.stdout);
     assert!(text.stderr.contains("search.contacts_max: without effect"), "{}", text.stderr);
+    assert!(text.stderr.contains("does not hold the roadmap that was read"), "{}", text.stderr);
     let refused = |args: &[&str], parts: &[&str]| {
         desk.refused(&[&["plan", "room.toml", "--quiet", "--roadmap"][..], args].concat(), parts);
     };
@@ -235,6 +236,16 @@ fn a_roadmap_is_read_back_for_other_ends() {
     refused(&["room.obj"], &["room.obj", "this is no roadmap", "expected the JSON file of a plan over this mesh"]);
     let faster = ["roadmap.json", "--set", "hopper.takeoff_speed_max_m_s=7"];
     refused(&faster, &["roadmap.json", "built for another mesh, hopper, gravity or surface", "build it again"]);
+    // A file cut short, and one whose windows let arcs through the wall.
+    let written = desk.read("roadmap.json");
+    desk.write("cut.json", &written[..written.len() / 2]);
+    refused(&["cut.json"], &["cut.json", "this is no roadmap", "expected the JSON file of a plan over this mesh"]);
+    let mut spoiled: Value = serde_json::from_str(&written).unwrap();
+    for window in spoiled["windows"].as_array_mut().unwrap() {
+        (window[2], window[3]) = (0.001.into(), 0.002.into());
+    }
+    desk.write("spoiled.json", spoiled.to_string());
+    refused(&["spoiled.json"], &["spoiled.json", "a hop of this roadmap is not feasible over the mesh", "build it again"]);
     desk.write("chain.csv", "x_m,z_m\n0,0\n10,0\n");
     for option in ["--roadmap", "--roadmap-output"] {
         let on_chain =

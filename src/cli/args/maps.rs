@@ -54,8 +54,8 @@ impl ViewArgs {
         match self.seen_from {
             None => Ok(()),
             Some(_) => Err(Failure::message(
-                "--seen-from: found this option, which turns the picture of a mesh, and this terrain is none with route = \"free\": leave the option \
-                 out",
+                "--seen-from: found this option, which turns the picture of a mesh with route = \"free\", and this terrain is another one: leave the \
+                 option out",
             )),
         }
     }

@@ -9,6 +9,7 @@ use crate::cli::{
     Answer, Failure,
     args::PlanArgs,
     load::MeshPlanInput,
+    not_on_mesh,
     output::{self, Pending, TableFormat},
     progress::Progress,
     views::{Files, Table, Views},
@@ -16,18 +17,14 @@ use crate::cli::{
 
 /// Plans a free route over a mesh.
 pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
-    let refused = [
+    not_on_mesh::refuse(&[
         ("--geojson", args.geojson.is_some(), "writes a path on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
         ("--plot-front", args.plot_front.is_some(), "draws a front over a DEM or a profile"),
         ("--prove", args.prove.prove, "bounds the hops along a profile"),
         ("--dry-run", args.size.dry_run, "states the size of a search over a DEM"),
         ("--memory-max-mib", args.size.memory_max_mib.is_some(), "limits the memory of a search over a DEM"),
-    ];
-    if let Some((option, _, what)) = refused.into_iter().find(|(_, given, _)| *given) {
-        let message = format!("{option}: found this option, which {what}, and this terrain is a mesh: leave the option out");
-        return Err(Failure::message(message));
-    }
+    ])?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let mut table = Table::begin(args.output.as_deref(), TableFormat::Csv)?;
     let roadmap_output = args.roadmap.roadmap_output.as_deref().map(Pending::begin).transpose()?;

@@ -29,7 +29,7 @@ pub(crate) use mesh_hop::{MeshHopInput, load_mesh_hop};
 pub(crate) use mesh_plan::{MeshPlanInput, is_over_mesh, load_mesh_plan, load_mesh_scenario};
 pub(crate) use names::relative_name;
 pub(crate) use pairs::read_pairs;
-pub(crate) use result::{check_result_over_mesh, plan_to_fly};
+pub(crate) use result::{MeshResult, plan_to_fly};
 pub(crate) use vary::load_to_vary;
 
 use super::{

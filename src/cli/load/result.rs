@@ -4,8 +4,9 @@ use std::{error::Error, fs, sync::Arc};
 
 use chta::{
     report::HopRecord,
-    study::{PlanOptions, Planned, plan, same_path_over_mesh},
+    study::{MeshResultPath, PlanOptions, Planned, plan},
 };
+use serde_json::Value;
 
 use super::{Loaded, MeshPlanInput};
 use crate::cli::{
@@ -23,28 +24,40 @@ pub(crate) fn plan_to_fly(args: &SimulateArgs, loaded: &Loaded, progress: &Progr
     if args.plan_anew || !input.is_result() {
         return Ok(Arc::new(plan(&loaded.case, PlanOptions::default(), progress)?));
     }
-    let refused = |error: &dyn Error| refused_result(&input, error);
-    let text = fs::read(&input.file).map_err(|error| refused(&error))?;
-    let document = serde_json::from_slice(&text).map_err(|error| refused(&error))?;
-    let planned = Planned::read_back(&loaded.case, &document, &loaded.record.inputs);
-    planned.map(Arc::new).map_err(|error| refused(&error))
+    let planned = Planned::read_back(&loaded.case, &document(&input)?, &loaded.record.inputs);
+    planned.map(Arc::new).map_err(|error| refused(&input, &error))
 }
 
-/// Refuses a result over a mesh whose path is not the one that was planned for its scenario, unless that is to be flown anyway.
-pub(crate) fn check_result_over_mesh(args: &SimulateArgs, loaded: &MeshPlanInput, planned: &[HopRecord]) -> Result<(), Failure> {
-    let input = inputs::open(&args.journey.chain, Role::Chain)?;
-    args.check_plan_anew(&input)?;
-    if args.plan_anew || !input.is_result() {
-        return Ok(());
+/// The result over a mesh whose path trials fly, if they are those of a result.
+pub(crate) struct MeshResult(Option<(Input, MeshResultPath)>);
+
+impl MeshResult {
+    /// Reads it; nothing of an input that is no result, or is to be planned anew.
+    pub(crate) fn of(args: &SimulateArgs, loaded: &MeshPlanInput) -> Result<Self, Failure> {
+        let input = inputs::open(&args.journey.chain, Role::Chain)?;
+        args.check_plan_anew(&input)?;
+        if args.plan_anew || !input.is_result() {
+            return Ok(Self(None));
+        }
+        let path = MeshResultPath::read(&document(&input)?, loaded.inputs()).map_err(|error| refused(&input, &error))?;
+        Ok(Self(Some((input, path))))
     }
-    let refused = |error: &dyn Error| refused_result(&input, error);
-    let text = fs::read(&input.file).map_err(|error| refused(&error))?;
-    let document = serde_json::from_slice(&text).map_err(|error| refused(&error))?;
-    same_path_over_mesh(&document, loaded.inputs(), planned).map_err(|error| refused(&error))
+
+    /// Refuses a plan with another path.
+    pub(crate) fn check_planned(&self, planned: &[HopRecord]) -> Result<(), Failure> {
+        let Self(Some((input, path))) = self else { return Ok(()) };
+        path.check_planned(planned).map_err(|error| refused(input, &error))
+    }
+}
+
+/// The document of a result.
+fn document(input: &Input) -> Result<Value, Failure> {
+    let text = fs::read(&input.file).map_err(|error| refused(input, &error))?;
+    serde_json::from_slice(&text).map_err(|error| refused(input, &error))
 }
 
 /// Why the path of a result is not flown, and what to do.
-fn refused_result(input: &Input, reason: &dyn Error) -> Failure {
+fn refused(input: &Input, reason: &dyn Error) -> Failure {
     Failure::message(format!("{}: {reason}; --plan-anew plans its scenario anew", input.given.display()))
 }
 

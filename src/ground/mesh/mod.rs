@@ -122,11 +122,9 @@ impl MeshGround {
         &self.surface
     }
 
-    /// The length of the longest hop over level ground by the greatest speeds, m.
-    pub fn level_hop_m(&self) -> f64 {
-        let limits = self.envelope.hopper().limits();
-        let speed_m_s = limits.takeoff_speed_max_m_s.min(limits.arc_landing_speed_max_m_s());
-        speed_m_s * speed_m_s / self.envelope.gravity_m_s2()
+    /// Whether two contacts are one place, within the resolution of the mesh: from the one to the other no hop is needed.
+    pub fn are_one_place(&self, [a, b]: [&MeshContact; 2]) -> bool {
+        (b.point_m() - a.point_m()).norm() <= self.tree.resolution_m()
     }
 
     /// Lower bounds on paths from the greatest speeds alone.

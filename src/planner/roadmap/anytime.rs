@@ -175,9 +175,7 @@ pub fn over_roadmap(
     question: &RoadmapQuestion<'_>,
     progress: &dyn Progress,
 ) -> Result<GrownRoadmap, Cancelled> {
-    let apart_m = (ends[1].point_m() - ends[0].point_m()).norm();
-    let first = roadmap.contact_count();
-    let numbers = if apart_m <= ground.tree().resolution_m() { (first, first) } else { (first, first + 1) };
+    let numbers = numbered(ground, &ends, roadmap.contact_count());
     roadmap.extend(ground, ends.into(), progress)?;
     let route = roadmap.route(ground, numbers, question)?;
     let mut grown = GrownRoadmap {
@@ -190,6 +188,11 @@ pub fn over_roadmap(
     };
     grown.record();
     Ok(grown)
+}
+
+/// The numbers of start and goal where they are the next contacts of a roadmap: the same one where they are one place.
+pub(super) fn numbered(ground: &MeshGround, [start, goal]: &[MeshContact; 2], first: usize) -> (usize, usize) {
+    (first, first + usize::from(!ground.are_one_place([start, goal])))
 }
 
 impl GrownRoadmap {

@@ -36,6 +36,9 @@ pub enum RoadmapFileError {
         "this roadmap was built for another mesh, hopper, gravity or surface, or by another version, expected one of this scenario: build it again"
     )]
     OtherGround,
+    /// A hop that the mesh does not have.
+    #[error("a hop of this roadmap is not feasible over the mesh, expected the file as it was written: build it again")]
+    Hop,
     /// A contact that is not on the mesh.
     #[error("contact {number} does not lie on its facets of the mesh")]
     Contact {

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use super::{
     ContactSampler, GrownRoadmap, JoinCounts, JoinTest, Roadmap, RoadmapEnd, RoadmapPath, RoadmapQuestion, RoadmapRoute,
-    join::Joiner,
+    anytime::numbered, join::Joiner,
 };
 use crate::{
     ballistics::PathBounds,
@@ -47,8 +47,7 @@ pub fn grow_one_by_one(
     progress: &dyn Progress,
 ) -> Result<(GrownRoadmap, JoinCounts), Cancelled> {
     let began = Instant::now();
-    let is_there = (ends[1].point_m() - ends[0].point_m()).norm() <= ground.tree().resolution_m();
-    let numbers = if is_there { (0, 0) } else { (0, 1) };
+    let numbers = numbered(ground, &ends, 0);
     let OneByOne { test, height_max_m, .. } = scheme;
     let joiner = Joiner { ground, test, height_max_m, counts: JoinCounts::default(), buffers: MeshBuffers::default() };
     let mut growth = Growth {

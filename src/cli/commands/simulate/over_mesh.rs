@@ -8,7 +8,8 @@ use chta::{
 use crate::cli::{
     Answer, Failure,
     args::SimulateArgs,
-    load::{MeshPlanInput, check_result_over_mesh},
+    load::{MeshPlanInput, MeshResult},
+    not_on_mesh,
     output::{self, Pending},
     progress::Progress,
     views::{Files, show},
@@ -17,23 +18,20 @@ use crate::cli::{
 /// Simulates a free route over a mesh.
 pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
     args.check_half_width()?;
-    let refused = [
+    not_on_mesh::refuse(&[
         ("--experiment", args.experiment.is_some(), "is flown along a profile"),
         ("--output", args.output.is_some(), "writes landings along a profile"),
         ("--plot-map", args.plot_map.is_some(), "draws landings on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
-    ];
-    if let Some((option, _, what)) = refused.into_iter().find(|(_, given, _)| *given) {
-        let message = format!("{option}: found this option, which {what}, and this terrain is a mesh: leave the option out");
-        return Err(Failure::message(message));
-    }
+    ])?;
+    let of_result = MeshResult::of(args, input)?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let tally = args.tally.as_deref().map(Pending::begin).transpose()?;
     let about = |error: &dyn std::error::Error| Failure::message(format!("{}: {error}", input.mesh.display()));
     let progress = Progress::new(args.common.quiet);
     let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: None, roadmap: None };
     let routed = mesh_route(&question, &progress).map_err(|error| Failure::about(&input.mesh, &error))?;
-    check_result_over_mesh(args, input, &routed.answer.path)?;
+    of_result.check_planned(&routed.answer.path)?;
     let simulated =
         simulate_over_mesh(routed, &input.scenario, &args.options(), &mut (), &progress).map_err(|error| about(&error))?;
     output::warn_all(args.common.quiet, &simulated.warnings);
