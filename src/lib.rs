@@ -55,6 +55,7 @@
 //! chain        the polygonal chain and what each segment allows
 //! hop          the hop test: feasible take-off slopes between two stations of a chain, many hops on a segment
 //! ground       chains and DEMs under the same traits: raw facts, feasible windows between two contacts, first contact of an arc
+//! drive        straight legs of a rover over a DEM, and maps of where it drives
 //! flight       one hop flown under drawn errors
 //! graph        nodes, hops as edges, the search
 //! planner      paths by any objective, within budgets, along a chain; over a DEM in any direction, over nodes finer than posts
@@ -80,6 +81,7 @@
 
 pub mod ballistics;
 pub mod chain;
+pub mod drive;
 #[cfg(feature = "plot")]
 pub mod figure;
 mod flight;

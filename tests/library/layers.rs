@@ -6,7 +6,7 @@
 use std::{fs, path::Path};
 
 /// The layers of modules, from the top. The last two are the binary's own modules, below all of the library.
-const LADDER: [&str; 19] = [
+const LADDER: [&str; 20] = [
     "progress",
     "quantity",
     "world",
@@ -15,6 +15,7 @@ const LADDER: [&str; 19] = [
     "chain",
     "hop",
     "ground",
+    "drive",
     "flight",
     "graph",
     "planner",
