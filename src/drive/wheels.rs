@@ -66,8 +66,7 @@ mod tests {
                 (height_m(x_m + base_m) - height_m(x_m)).abs()
             };
             let sampled = (0..=samples).map(step).fold(0.0, f64::max);
-            let steepest =
-                points.windows(2).map(|p| ((p[1].z_m - p[0].z_m) / (p[1].x_m - p[0].x_m)).abs()).fold(0.0, f64::max);
+            let steepest = points.windows(2).map(|p| ((p[1].z_m - p[0].z_m) / (p[1].x_m - p[0].x_m)).abs()).fold(0.0, f64::max);
             let coarse = 2.0 * steepest * length_m / f64::from(samples);
             assert!(sampled <= found.value + 1e-9 && found.value <= sampled + coarse + 1e-9, "{sampled} {found:?}");
         }

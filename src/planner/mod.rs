@@ -48,7 +48,9 @@ pub use objective::{Objective, ObjectiveProblem};
 pub use route_gap::RouteGap;
 pub use search::{FoundPath, LabelCap, LegGraph, LegVisitor, PathStep, SearchResult, Successor, UnmetBudget, search};
 pub use surface_legs::SurfaceLegs;
-pub use travel::Travel;
+pub use travel::{
+    Mission, MissionFront, MissionMove, MissionPath, MissionQuestion, MissionWork, Travel, front_of_missions, travel,
+};
 
 #[cfg(test)]
 mod surface_tests;
