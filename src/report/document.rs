@@ -23,6 +23,8 @@ pub enum DocumentKind {
     Plan,
     /// A path over a mesh: [`MeshPlanAnswer`](super::MeshPlanAnswer).
     PlanMesh,
+    /// A path of a scenario that drives: [`TravelAnswer`](super::TravelAnswer).
+    PlanTravel,
     /// A path, beside the other files of a run: [`PlanAnswer`](super::PlanAnswer).
     Run,
     /// A path over a mesh, beside the other files of a run: [`MeshPlanAnswer`](super::MeshPlanAnswer).
@@ -51,7 +53,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -59,6 +61,7 @@ impl DocumentKind {
         Self::CheckMesh,
         Self::Plan,
         Self::PlanMesh,
+        Self::PlanTravel,
         Self::Run,
         Self::RunMesh,
         Self::Simulate,
@@ -83,6 +86,7 @@ impl DocumentKind {
             Self::CheckMesh => "check-mesh",
             Self::Plan => "plan",
             Self::PlanMesh => "plan-mesh",
+            Self::PlanTravel => "plan-travel",
             Self::Run => "run",
             Self::RunMesh => "run-mesh",
             Self::Simulate => "simulate",

@@ -122,9 +122,11 @@ impl Scenario {
         let [friction_raster, keep_out] = overlays(&mut entries, &surface, terrain.as_ref());
         let derating = super::derating::derating(&mut entries, &hopper, &surface);
         let drive = super::drive::drive(&mut entries, terrain.as_ref(), route, hopper.limits());
+        let drives = drive.as_ref().is_some_and(|keys| keys.travel.drives());
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
         let budget = super::budget::budget(&entries);
-        let (objective, commands, wanted_angle) = super::budget::objective(&mut entries, budget, &hopper, uncertainty.as_ref());
+        let (objective, commands, wanted_angle) =
+            super::budget::objective(&mut entries, budget, &hopper, uncertainty.as_ref(), drives);
         let (objective, commands) = match mesh_search.planner {
             RoadmapPlanner::Exact => (objective, commands),
             RoadmapPlanner::Prm => (Some(super::mesh_planner::objective_of_prm()), SearchedCommands::Distinct),
@@ -175,6 +177,11 @@ impl Scenario {
 }
 
 impl Scenario {
+    /// How it drives, where it does.
+    pub fn drives(&self) -> Option<&DriveKeys> {
+        self.drive.as_ref().filter(|keys| keys.travel.drives())
+    }
+
     /// Keys that hops over a DEM need and the scenario lacks (a chain file could supply them in its columns).
     pub fn lacks_on_a_dem(&self) -> Vec<LackingKey> {
         let no_grip = self.surface.grip.is_none() && self.friction_raster.is_none();

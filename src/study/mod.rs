@@ -68,6 +68,7 @@ mod trade;
 mod trade_free;
 mod traded;
 mod trajectory;
+mod travel;
 mod value_scan;
 mod variation;
 
@@ -105,4 +106,5 @@ pub use swept_key::SweptKey;
 pub use trade::{CellError, Trade, TradeError, TradedCells, Varied, verdict};
 pub use traded::{Traded, trade};
 pub use trajectory::TrajectoryError;
+pub use travel::{DriveDefect, TravelOptions, TravelPlanned, travel_plan};
 pub use variation::Variation;

@@ -7,7 +7,7 @@ use crate::{
     report::{
         CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshCheckAnswer,
         MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer,
-        SizeAnswer, TradeAnswer,
+        SizeAnswer, TradeAnswer, TravelAnswer,
     },
     scenario::scenario_schema,
 };
@@ -55,6 +55,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Plan | DocumentKind::Run => derived::<PlanAnswer>(),
         DocumentKind::CheckMesh => derived::<MeshCheckAnswer>(),
         DocumentKind::PlanMesh | DocumentKind::RunMesh => derived::<MeshPlanAnswer>(),
+        DocumentKind::PlanTravel => derived::<TravelAnswer>(),
         DocumentKind::Simulate => derived::<SimulateAnswer>(),
         DocumentKind::SimulateMesh => derived::<MeshSimulateAnswer>(),
         DocumentKind::SimulateExperiment => derived::<ExperimentAnswer>(),

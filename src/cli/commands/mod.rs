@@ -12,6 +12,7 @@ pub(super) mod map;
 mod map_over_mesh;
 pub(super) mod plan;
 mod plan_over_mesh;
+mod plan_travel;
 pub(super) mod require;
 pub(super) mod run;
 mod run_over_mesh;
