@@ -49,7 +49,8 @@ pub use route_gap::RouteGap;
 pub use search::{FoundPath, LabelCap, LegGraph, LegVisitor, PathStep, SearchResult, Successor, UnmetBudget, search};
 pub use surface_legs::SurfaceLegs;
 pub use travel::{
-    Mission, MissionFront, MissionMove, MissionPath, MissionQuestion, MissionWork, Travel, front_of_missions, travel,
+    Mission, MissionFront, MissionMove, MissionPath, MissionQuestion, MissionWork, Toward, Travel, TravelField, front_of_missions,
+    travel, travel_field,
 };
 
 #[cfg(test)]

@@ -47,13 +47,15 @@ pub enum DocumentKind {
     Map,
     /// Hops to contacts all over a mesh: [`MeshMapAnswer`](super::MeshMapAnswer).
     MapMesh,
+    /// Missions to all nodes of a map, of a scenario that drives: [`TravelMapAnswer`](super::TravelMapAnswer).
+    MapTravel,
     /// What an answer takes before it is computed: [`SizeAnswer`](super::SizeAnswer).
     Size,
 }
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -73,6 +75,7 @@ impl DocumentKind {
         Self::Fan,
         Self::Map,
         Self::MapMesh,
+        Self::MapTravel,
         Self::Size,
     ];
 
@@ -98,6 +101,7 @@ impl DocumentKind {
             Self::Fan => "fan",
             Self::Map => "map",
             Self::MapMesh => "map-mesh",
+            Self::MapTravel => "map-travel",
             Self::Size => "size",
         }
     }

@@ -38,6 +38,7 @@ mod text;
 mod trade_answer;
 mod trajectory;
 mod travel_answer;
+mod travel_map_answer;
 mod travel_text;
 
 pub use advice::AdviceRecord;
@@ -103,4 +104,5 @@ pub use travel_answer::{
     DriveLegRecord, DriveMarginsRecord, DriveRefusalRecord, HopLegRecord, TravelAlternativeRecord, TravelAnswer, TravelFrontRecord,
     TravelLegRecord, TravelSearchRecord, TravelStopRecord, TravelSumsRecord, TravelTotalsRecord, write_travel_csv,
 };
+pub use travel_map_answer::{TravelGoalRecord, TravelMapAnswer, TravelReachRecord};
 pub use travel_text::travel_text;

@@ -268,15 +268,12 @@ impl TravelSumsRecord {
     }
 }
 
-impl TravelSearchRecord {
-    /// The neighbours in words, with the longest detour that they cause.
-    pub fn neighbours_in_words(&self) -> String {
-        format!(
-            "{} neighbours: drive legs over flat ground without obstacles are up to {:.1} % longer than the straight line",
-            self.neighbours,
-            100.0 * self.elongation_max
-        )
-    }
+/// The neighbours in words, with the longest detour that they cause.
+pub(super) fn neighbours_in_words(neighbours: usize, elongation_max: f64) -> String {
+    let percent = 100.0 * elongation_max;
+    format!(
+        "{neighbours} neighbours: drive legs over flat ground without obstacles are up to {percent:.1} % longer than the straight line"
+    )
 }
 
 impl DriveMarginsRecord {

@@ -2,7 +2,7 @@
 
 use super::{
     DriveLegRecord, DriveMarginsRecord, HopLegRecord, TravelAlternativeRecord, TravelAnswer, TravelLegRecord, TravelSumsRecord,
-    TravelTotalsRecord, mesh_plan_answer::point, text::Sheet,
+    TravelTotalsRecord, mesh_plan_answer::point, text::Sheet, travel_answer::neighbours_in_words,
 };
 use crate::{planner::Amount, quantity::format_number};
 
@@ -31,7 +31,7 @@ pub fn travel_text(answer: &TravelAnswer) -> String {
         search.drives_tested
     ));
     if answer.travel.drives() {
-        sheet.line(format_args!("{}", search.neighbours_in_words()));
+        sheet.line(format_args!("{}", neighbours_in_words(search.neighbours, search.elongation_max)));
     }
     stopped_lines(&mut sheet, answer);
     if !answer.path.is_empty() {

@@ -74,7 +74,7 @@ mod variation;
 
 pub use alike::ask_the_same;
 #[cfg(feature = "plot")]
-pub use captions::conditions;
+pub use captions::{conditions, wheels};
 pub use case::{Case, CaseError, Commands};
 pub use check::{CheckError, Checked, CheckedPair, check, check_pairs};
 pub use compare::{Compared, Comparison, compare};
@@ -106,5 +106,5 @@ pub use swept_key::SweptKey;
 pub use trade::{CellError, Trade, TradeError, TradedCells, Varied, verdict};
 pub use traded::{Traded, trade};
 pub use trajectory::TrajectoryError;
-pub use travel::{DriveDefect, TravelOptions, TravelPlanned, travel_plan};
+pub use travel::{DriveDefect, ReachedBy, TravelMap, TravelOptions, TravelPlanned, travel_map, travel_plan};
 pub use variation::Variation;

@@ -7,7 +7,7 @@ use crate::{
     report::{
         CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshCheckAnswer,
         MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer,
-        SizeAnswer, TradeAnswer, TravelAnswer,
+        SizeAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer,
     },
     scenario::scenario_schema,
 };
@@ -65,6 +65,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Fan => derived::<FanAnswer>(),
         DocumentKind::Map => derived::<MapAnswer>(),
         DocumentKind::MapMesh => derived::<MeshMapAnswer>(),
+        DocumentKind::MapTravel => derived::<TravelMapAnswer>(),
         DocumentKind::Size => derived::<SizeAnswer>(),
     };
     close(&mut schema, false);

@@ -10,6 +10,7 @@ pub(super) mod hop;
 pub(super) mod man;
 pub(super) mod map;
 mod map_over_mesh;
+mod map_travel;
 pub(super) mod plan;
 mod plan_over_mesh;
 mod plan_travel;

@@ -11,6 +11,7 @@ mod plan_view;
 mod raster;
 mod style;
 mod travel;
+mod travel_map;
 mod values;
 
 pub use data::{
@@ -25,6 +26,7 @@ pub use plan_view::PlanView;
 pub(super) use plan_view::{draw_plan_view, nearest_symbol};
 pub use style::RasterStyle;
 pub use travel::{TravelFigure, TravelLine, draw_travel};
+pub use travel_map::{TravelMapFigure, draw_travel_map};
 pub use values::draw_value_map;
 
 use super::FigureError;

@@ -28,14 +28,20 @@ const DRIVEN: u32 = u32::MAX;
 ///     layer n + 1      the direction from the start, for the first leg from a start beside the lattice
 /// ```
 ///
+/// Searched from the goal's side, legs lead to the nodes that are visited, and directions are those in which the search goes: two legs of a
+/// path make the same angle either way.
+///
 /// A hop needs no turn: its preparation and its settling have their own times.
 pub(super) struct TravelLegs<'a> {
     pub(super) hops: Option<&'a LegOffers<'a>>,
     pub(super) drive: Option<&'a DriveLegs<'a>>,
     ground: &'a DemGround,
     nodes: &'a SurfaceNodes,
+    side: Side,
+    /// Where the search begins.
     start: (SurfaceNode, MapPosition),
-    goal: (SurfaceNode, MapPosition),
+    /// Where it ends; `None`: it visits all states.
+    goal: Option<(SurfaceNode, MapPosition)>,
     turns: Option<Turns>,
     counter: RefCell<PairCounter<'a>>,
     hops_tested: Cell<u64>,
@@ -61,7 +67,7 @@ impl<'a> TravelLegs<'a> {
     pub(super) fn new(
         (ground, nodes): (&'a DemGround, &'a SurfaceNodes),
         (hops, drive): (Option<&'a LegOffers<'a>>, Option<&'a DriveLegs<'a>>),
-        [start, goal]: [(SurfaceNode, MapPosition); 2],
+        (side, start, goal): (Side, (SurfaceNode, MapPosition), Option<(SurfaceNode, MapPosition)>),
         meter: &'a Meter<'_>,
     ) -> Self {
         Self {
@@ -69,6 +75,7 @@ impl<'a> TravelLegs<'a> {
             drive,
             ground,
             nodes,
+            side,
             start,
             goal,
             turns: drive.and_then(Turns::of),
@@ -83,9 +90,15 @@ impl<'a> TravelLegs<'a> {
         if turns { neighbours + 2 } else { 1 }
     }
 
-    /// Start and goal, as states.
-    pub(super) const fn ends(&self) -> (usize, usize) {
-        (self.start.0.index(), self.goal.0.index())
+    /// Start and goal, as states; without a goal one that nothing reaches.
+    pub(super) fn ends(&self) -> (usize, usize) {
+        (self.start.0.index(), self.goal.map_or_else(|| self.states(), |goal| goal.0.index()))
+    }
+
+    /// All states of nodes.
+    fn states(&self) -> usize {
+        let layers = self.turns.as_ref().map_or(1, |turns| Self::layers(true, turns.directions));
+        layers * self.nodes.count()
     }
 
     /// The node of a state.
@@ -131,7 +144,7 @@ impl<'a> TravelLegs<'a> {
         };
         let arrives = match arrival {
             // One state of the goal is enough: nothing follows.
-            _ if to.0 == self.goal.0 => 0,
+            _ if self.goal.is_some_and(|goal| to.0 == goal.0) => 0,
             Arrival::Neighbour(direction) => direction + 1,
             Arrival::Joined => turns.directions + 1,
         };
@@ -141,7 +154,7 @@ impl<'a> TravelLegs<'a> {
     /// Whether the search keeps the direction of a leg between a node and a place beside the lattice: where turning takes time only from the
     /// start and to the goal, of which each has a state.
     fn is_joined(&self, [from, to]: [SurfaceNode; 2]) -> bool {
-        self.turns.is_none() || from == self.start.0 || to == self.goal.0
+        self.turns.is_none() || from == self.start.0 || self.goal.is_some_and(|goal| to == goal.0)
     }
 
     fn drive_from(
@@ -163,7 +176,8 @@ impl<'a> TravelLegs<'a> {
             }
             self.drives_tested.set(self.drives_tested.get() + 1);
             self.counter.borrow_mut().pair()?;
-            if let Ok(leg) = drive.leg(at, &to) {
+            let (_, [first, last]) = self.side.in_order((node, at), (other, &to));
+            if let Ok(leg) = drive.leg(first, last) {
                 visitor.visit(&Successor { node: state, command: DRIVEN, amounts: drive.amounts(&leg, turn_s) });
             }
         }
@@ -173,8 +187,7 @@ impl<'a> TravelLegs<'a> {
 
 impl LegGraph for TravelLegs<'_> {
     fn nodes(&self) -> usize {
-        let layers = self.turns.as_ref().map_or(1, |turns| Self::layers(true, turns.directions));
-        layers * self.nodes.count()
+        self.states() + usize::from(self.goal.is_none())
     }
 
     fn successors(&self, state: usize, visitor: &mut dyn LegVisitor) -> Result<(), Cancelled> {
@@ -184,7 +197,7 @@ impl LegGraph for TravelLegs<'_> {
         // Driving first: what it reaches sooner is not tested for a hop.
         self.drive_from((node, &at), layer, visitor)?;
         if let Some(hops) = self.hops {
-            let tested = hops.visit((node, Side::Start), &|_| true, visitor, &mut self.counter.borrow_mut())?;
+            let tested = hops.visit((node, self.side), &|_| true, visitor, &mut self.counter.borrow_mut())?;
             self.hops_tested.set(self.hops_tested.get() + tested);
         }
         Ok(())
@@ -194,7 +207,7 @@ impl LegGraph for TravelLegs<'_> {
         /// Rounding errors are far smaller than this share.
         const SHAVED: f64 = 1.0 - 1e-9;
         let Some(at) = self.position(self.node_of(state)) else { return Amounts::NONE };
-        let goal = &self.goal.1;
+        let Some((_, goal)) = &self.goal else { return Amounts::NONE };
         Amounts::NONE.with(Amount::Distance, libm::hypot(goal.at.x - at.at.x, goal.at.y - at.at.y) * SHAVED)
     }
 }

@@ -5,7 +5,7 @@ use super::super::{
     front,
     labels::Tracked,
     search::{Run, without_budgets},
-    surface_hops::SurfaceHops,
+    surface_hops::{Side, SurfaceHops},
     surface_legs::{LegOffers, Settling},
 };
 use super::{Travel, drive_legs::DriveLegs, legs::TravelLegs};
@@ -193,7 +193,8 @@ impl<'a> Asked<'a> {
         let offered = (route.commands, self.how.takeoff);
         let hops = travel.hops().then(|| LegOffers::new(&self.surface, settling, offered, route.errors));
         let drive = travel.drives().then(|| DriveLegs::new(self.ground, rover, self.nodes));
-        let legs = TravelLegs::new((self.ground, self.nodes), (hops.as_ref(), drive.as_ref()), self.ends, &self.meter);
+        let ends = (Side::Start, self.ends[0], Some(self.ends[1]));
+        let legs = TravelLegs::new((self.ground, self.nodes), (hops.as_ref(), drive.as_ref()), ends, &self.meter);
         use_them(self, &legs)
     }
 

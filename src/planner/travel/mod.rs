@@ -9,9 +9,11 @@
 //! Where driving joins hops, no bound on hops, speeds, energies or times of flights holds, and the search uses none.
 
 mod drive_legs;
+mod field;
 mod kind;
 mod legs;
 mod mission;
 
+pub use field::{Toward, TravelField, travel_field};
 pub use kind::Travel;
 pub use mission::{Mission, MissionFront, MissionMove, MissionPath, MissionQuestion, MissionWork, front_of_missions, travel};

@@ -1,7 +1,7 @@
 //! The picture of a mission.
 
 use super::{
-    super::captions::{conditions, title},
+    super::captions::{conditions, title, wheels},
     plan::TravelPlanned,
     walk::{Driven, Stretch},
 };
@@ -28,28 +28,13 @@ impl TravelPlanned {
         draw_travel(&TravelFigure {
             caption: Caption {
                 title: title("A mission that may drive and hop", &self.case.scenario),
-                lines: vec![conditions(&self.case.scenario), self.wheels(), self.result()],
+                lines: vec![conditions(&self.case.scenario), wheels(&self.case.scenario), self.result()],
             },
             dem: self.ground.terrain().dem(),
             start: at(answer.start_m),
             goal: at(answer.goal_m),
             legs: self.lines(),
             nearest: answer.stopped.as_ref().map(|stopped| at(stopped.nearest_m)),
-        })
-    }
-
-    /// The wheels in words.
-    fn wheels(&self) -> String {
-        let limits = self.case.scenario.drive.as_ref().map(|keys| keys.rover.limits());
-        limits.map_or_else(String::new, |limits| {
-            let up = limits.slope_up_max.written_degrees();
-            let [down, across] = [limits.slope_down_max, limits.cross_slope_max]
-                .map(|slope| slope.map_or(up, crate::quantity::Angle::written_degrees));
-            format!(
-                "wheels: {} m/s over level ground; slopes at most {up} deg up, {down} deg down, {across} deg across; {} neighbours",
-                limits.speed_m_s,
-                limits.neighbours.count()
-            )
         })
     }
 
