@@ -2,8 +2,6 @@
 
 use std::cell::{Cell, RefCell};
 
-use nalgebra::Vector2;
-
 use super::{
     super::{
         Amount, Amounts, LegGraph, LegVisitor, PathStep, Successor, SurfaceNode, SurfaceNodes, surface_hops::Side,
@@ -129,7 +127,7 @@ impl<'a> TravelLegs<'a> {
         arrival: Arrival,
     ) -> (usize, f64) {
         let Some(turns) = &self.turns else { return (to.0.index(), 0.0) };
-        let along = || (to.1.at - from.1.at).try_normalize(0.0).unwrap_or_else(Vector2::x);
+        let along = (to.1.at - from.1.at).try_normalize(0.0);
         let before = match layer {
             0 => None,
             layer if layer <= turns.directions => Some(drive.heading(layer - 1)),
@@ -140,7 +138,8 @@ impl<'a> TravelLegs<'a> {
             (layer, Arrival::Neighbour(direction)) if layer <= turns.directions => {
                 turns.times_s[(layer - 1) * turns.directions + direction]
             }
-            _ => before.map_or(0.0, |before| drive.turn_s(&before, &along())),
+            // Between a place and a node at the same position nothing turns.
+            _ => before.zip(along).map_or(0.0, |(before, along)| drive.turn_s(&before, &along)),
         };
         let arrives = match arrival {
             // One state of the goal is enough: nothing follows.

@@ -13,6 +13,8 @@ mod field;
 mod kind;
 mod legs;
 mod mission;
+#[cfg(test)]
+mod tests;
 
 pub use field::{Toward, TravelField, travel_field};
 pub use kind::Travel;

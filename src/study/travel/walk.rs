@@ -112,7 +112,8 @@ fn turn_time_s(rover: &Rover, places: &[MapPosition]) -> f64 {
         let along = pair[1].at - pair[0].at;
         libm::atan2(along.y, along.x).to_degrees()
     };
-    let headings: Vec<f64> = places.windows(2).map(heading).collect();
+    let moves = places.windows(2).filter(|pair| pair[0].at != pair[1].at);
+    let headings: Vec<f64> = moves.map(heading).collect();
     let turned = headings.windows(2).map(|pair| {
         let turn = (pair[1] - pair[0]).abs() % 360.0;
         turn.min(360.0 - turn)
