@@ -204,3 +204,103 @@ fn height_m(elements: &[Element], at_m: f64) -> f64 {
     let share = if width_m > 0.0 { ((at_m - element.from_m) / width_m).clamp(0.0, 1.0) } else { 1.0 };
     element.from_z_m + share * (element.to_z_m - element.from_z_m)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        draw::Draw,
+        drive::{DriveGround, DriveLimit},
+        ground::{DemGround, MapPosition},
+        terrain::{Dem, GeoReference, OverlaidDem, Overlays},
+        world::{Gravity, Hopper, RestSlope, RoverLimits, SlipCurve, SurfaceProperties},
+    };
+
+    /// The key that the checker names for a limit of the planner.
+    const fn key(limit: DriveLimit) -> &'static str {
+        match limit {
+            DriveLimit::Ground => "ground",
+            DriveLimit::KeepOut => "keep-out",
+            DriveLimit::SlopeUp => "slope_up_max_deg",
+            DriveLimit::SlopeDown => "slope_down_max_deg",
+            DriveLimit::CrossSlope => "cross_slope_max_deg",
+            DriveLimit::Step => "step_max_m",
+            DriveLimit::Roughness => "roughness_max_m",
+        }
+    }
+
+    fn ground(draw: &mut Draw) -> DemGround {
+        let (side, relief_m) = (7, draw.log_uniform(0.01, 2.0));
+        let heights = (0..side * side).map(|_| if draw.chance(0.04) { f64::NAN } else { draw.uniform(0.0, relief_m) }).collect();
+        let map = GeoReference::local(MapPoint::new(1000.0, 500.0), 1.0, draw.uniform(0.7, 1.4)).unwrap();
+        let dem = Dem::new(side, side, heights, map).unwrap();
+        let surface = SurfaceProperties { grip: None, rest: RestSlope::Unlimited };
+        let hopper = Hopper::with_speeds(1.0, 1.0).unwrap();
+        let gravity = Gravity::new(draw.log_uniform(1e-5, 25.0)).unwrap();
+        DemGround::new(OverlaidDem::new(dem, Overlays::default()), &hopper, gravity, &surface)
+    }
+
+    fn rover(draw: &mut Draw) -> Rover {
+        let slope = |draw: &mut Draw| Angle::from_degrees(draw.uniform(5.0, 70.0));
+        let limits = RoverLimits {
+            slope_down_max: Some(slope(draw)),
+            cross_slope_max: Some(slope(draw)),
+            wheelbase_m: Some(draw.uniform(0.2, 1.5)),
+            step_max_m: draw.chance(0.5).then(|| draw.uniform(0.05, 0.8)),
+            roughness_max_m: draw.chance(0.5).then(|| draw.uniform(0.005, 0.15)),
+            rolling_resistance: 0.15,
+            efficiency: 0.5,
+            idle_power_w: 4.0,
+            slip: SlipCurve::new(&[[0.0, 0.0], [20.0, 0.5]]).unwrap(),
+            ..RoverLimits::new(draw.log_uniform(0.01, 1.0), slope(draw))
+        };
+        Rover::new(limits, Some(3.0)).unwrap()
+    }
+
+    /// Random legs, some along posts and edges: the checker passes what the planner drives, with the same sums, and where the planner
+    /// refuses it finds that limit broken too.
+    #[test]
+    fn two_ways_to_judge_a_leg_agree() {
+        let draw = &mut Draw::seeded(1907);
+        let (mut driven, mut refused) = (0, std::collections::BTreeMap::<&str, u32>::new());
+        for case in 0..500 {
+            let (ground, rover) = (ground(draw), rover(draw));
+            let drive = DriveGround::new(&ground, &rover);
+            let bounds = ground.terrain().dem().bounds();
+            for leg in 0..12 {
+                let on_posts = leg % 2 == 0;
+                let place = |draw: &mut Draw| {
+                    let map = ground.terrain().dem().georeference();
+                    let (row, col) = (draw.below(7), draw.below(7));
+                    let at = MapPoint::new(draw.uniform(bounds.min.x, bounds.max.x), draw.uniform(bounds.min.y, bounds.max.y));
+                    if on_posts { map.post(row, col) } else { at }
+                };
+                let [Some(from), Some(to)]: [Option<MapPosition>; 2] = [0, 1].map(|_| ground.position(place(draw))) else {
+                    continue;
+                };
+                if (to.at - from.at).norm() < 1e-6 {
+                    continue;
+                }
+                let again = drive_again(&ground, &rover, &from, &to);
+                match drive.leg(&from, &to) {
+                    Ok(leg) => {
+                        assert!(again.violations.is_empty(), "case {case}: {from:?} to {to:?}: {:?}", again.violations);
+                        for (a, b) in
+                            [(again.length_m, leg.length_m), (again.time_s, leg.time_s), (again.energy_j_kg, leg.energy_j_kg)]
+                        {
+                            assert!((a - b).abs() <= 1e-7 * (1e-9 + a.abs().max(b.abs())), "case {case}: {a} walked, {b} sliced");
+                        }
+                        driven += 1;
+                    }
+                    Err(refusal) => {
+                        let name = key(refusal.limit());
+                        let found = again.violations.iter().any(|violation| violation.limit == name);
+                        assert!(found, "case {case}: {from:?} to {to:?}: {refusal}, and the checker found {:?}", again.violations);
+                        *refused.entry(name).or_default() += 1;
+                    }
+                }
+            }
+        }
+        assert!(driven > 300 && refused.len() >= 6 && refused.values().all(|count| *count > 10), "{driven} {refused:?}");
+    }
+}
