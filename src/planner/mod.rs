@@ -48,6 +48,7 @@ pub use objective::{Objective, ObjectiveProblem};
 pub use route_gap::RouteGap;
 pub use search::{FoundPath, LabelCap, LegGraph, LegVisitor, PathStep, SearchResult, Successor, UnmetBudget, search};
 pub use surface_legs::SurfaceLegs;
+pub(crate) use travel::drive_amounts;
 pub use travel::{
     Mission, MissionFront, MissionMove, MissionPath, MissionQuestion, MissionWork, Toward, Travel, TravelField, front_of_missions,
     travel, travel_field,

@@ -154,6 +154,16 @@ impl SurfaceNodes {
         of_lattice.chain(self.places_about(at, distance_m))
     }
 
+    /// All nodes in a square about a position.
+    pub(crate) fn near(&self, at: MapPoint, distance_m: f64) -> impl Iterator<Item = SurfaceNode> + '_ {
+        self.about(at, distance_m)
+    }
+
+    /// A distance that no hop over a ground exceeds, m.
+    pub(crate) fn reach_m(ground: &DemGround) -> f64 {
+        HopReach::of(ground).longest_m()
+    }
+
     /// The single places in a square about a position.
     pub(super) fn places_about(&self, at: MapPoint, distance_m: f64) -> impl Iterator<Item = SurfaceNode> + '_ {
         let key = move |at: MapPoint| if self.by_easting { at.x } else { at.y };

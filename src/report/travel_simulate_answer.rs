@@ -37,7 +37,8 @@ pub struct TravelTrialsRecord {
     pub success_ci95: [f64; 2],
     /// How many ended in each way that occurs.
     pub outcomes: Vec<TravelOutcomeRecord>,
-    /// During which leg trials ended that did not reach the goal; 0: after the last one, off the goal.
+    /// Open loop, during which leg trials ended that did not reach the goal; 0: after the last one, off the goal.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ended_in_legs: Vec<EndedInLegRecord>,
     /// The mean mission time of those that reached the goal; null if none did.
     pub mission_time_mean_s: Option<f64>,
@@ -68,10 +69,10 @@ pub struct EndedInLegRecord {
 }
 
 impl TravelTrialsRecord {
-    /// Of a summary. `leg_of`: the number of the leg that a move belongs to, by its number from 1.
-    pub fn new(summary: &TravelSummary, leg_of: &dyn Fn(usize) -> usize) -> Self {
+    /// Of a summary. `leg_of`: the number of the leg that a move belongs to, by its number from 1, where the moves are those of the plan.
+    pub fn new(summary: &TravelSummary, leg_of: Option<&dyn Fn(usize) -> usize>) -> Self {
         let mut ended: Vec<EndedInLegRecord> = Vec::new();
-        for (number, trials) in &summary.ended_in {
+        for (leg_of, (number, trials)) in leg_of.iter().flat_map(|leg_of| summary.ended_in.iter().map(move |row| (leg_of, row))) {
             let leg = leg_of(*number);
             match ended.iter_mut().find(|record| record.leg == leg) {
                 Some(record) => record.trials += trials,

@@ -61,6 +61,7 @@ mod simulation;
 mod summary;
 mod tally;
 mod travel;
+mod travel_replan;
 mod trial;
 mod wilson;
 
@@ -79,4 +80,5 @@ pub use simulation::{ESTIMATE_TRIALS, FlightEnd, Simulation};
 pub use summary::{ErrorSummary, LandingEllipse, LandingSummary, RatePoint, Summary};
 pub use tally::{MergeProblem, Tally};
 pub use travel::{TravelMission, TravelMove, TravelOutcome, TravelSummary};
+pub use travel_replan::TravelToGo;
 pub use wilson::Wilson;

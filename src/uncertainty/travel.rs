@@ -4,12 +4,14 @@ use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use rayon::prelude::*;
 
-use super::{Policy, QuantileSketch, SimulationError, TrialOptions, TrialOutcome, Wilson, simulation::command, trial::outcome_of};
+use super::{
+    Policy, QuantileSketch, SimulationError, TravelToGo, TrialOptions, TrialOutcome, Wilson, simulation::command, trial::outcome_of,
+};
 use crate::{
-    ballistics::{Arc, TakeoffChoice},
+    ballistics::TakeoffChoice,
     drive::DriveGround,
-    flight::{Biases, Command, Errors, TrialDraws, Uncertainty, resting_at},
-    ground::{DemGround, FirstContact, MapPosition, Surface, Windows},
+    flight::{Biases, Command, Errors, HopErrors, TrialDraws, Uncertainty, resting_at},
+    ground::{DemGround, FirstContact, MapPosition, Surface},
     path::Hop,
     progress::{Detail, Meter, Progress, Stage},
     quantity::MapPoint,
@@ -20,8 +22,10 @@ use crate::{
 const STRETCH: u64 = 50;
 /// After so many trials progress is reported and the wanted precision checked.
 const BATCH: u64 = 1000;
-/// How often a robot that replans drives back towards a planned take-off that it cannot hop from where it is.
-const RETURNS_MOST: u32 = 3;
+/// How often a robot that replans tries to drive on where its errors lead it over a limit.
+const TRIES_MOST: u32 = 20;
+/// A robot that replans makes at most so many moves for each planned one, and these beside.
+const MOVES_MOST: (usize, usize) = (4, 40);
 
 /// One move of a mission as planned.
 #[derive(Clone, Copy, Debug)]
@@ -98,6 +102,17 @@ pub struct TravelMission {
     pub goal: MapPosition,
     /// Which of the feasible take-off angles a replanned hop has.
     pub takeoff: TakeoffChoice,
+    /// What the best missions take from all nodes to the goal, by which a robot replans; needed for [`Policy::Replan`].
+    pub to_go: Option<TravelToGo>,
+}
+
+/// The next move of a robot that replans.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Choice {
+    /// To a place.
+    Drive(MapPosition),
+    /// With a command.
+    Hop(Command<MapPosition>),
 }
 
 /// What the trials of a mission show.
@@ -137,10 +152,11 @@ struct Tried {
 impl TravelMission {
     /// Makes the trials.
     ///
-    /// A drive has errors of its heading and of its length, as the rover states them, and fails with a rate for each metre. Open loop it has
-    /// the planned direction and length from wherever it begins; replanned it leads to the planned place. A hop is flown as in
-    /// [`Simulation`](super::Simulation); replanned it leads from where the robot believes to be to the planned landing, and where no arc does,
-    /// the robot drives towards the planned take-off first. The wheels are judged over the map as it is known, also where heights have errors.
+    /// A drive has errors of its heading and of its length, as the rover states them, and fails with a rate for each metre; hops are flown as
+    /// in [`Simulation`](super::Simulation). Open loop the robot makes the planned moves, with their directions, lengths and commands, from
+    /// wherever it is, and a drive that breaks a limit ends the trial. Replanned, it makes the planned move where it believes to be at its
+    /// beginning, and else drives or hops to the node by which least is left to the goal; where its errors would lead it over a limit it stays
+    /// and tries again. The wheels are judged over the map as it is known, also where heights have errors.
     ///
     /// The results do not depend on the number of threads.
     ///
@@ -159,6 +175,9 @@ impl TravelMission {
         let meter = Meter::with_total(progress, Stage::Trials, options.trials);
         meter.report(Detail::None)?;
         let rules = Errors::new(errors.clone(), options.policy == Policy::Replan);
+        if options.policy == Policy::Replan && self.to_go.is_none() {
+            return Err(SimulationError::NoCostsToGo);
+        }
         let mut sums = Sums::default();
         let (mut done, last) = (options.first_trial, options.first_trial + options.trials);
         while done < last {
@@ -206,27 +225,19 @@ impl TravelMission {
             drive: DriveGround::new(&self.planning, &self.rover),
             rules,
             errors,
-            policy: options.policy,
             at: start.at,
             time_s: 0.0,
             driven_m: 0.0,
             heading: None,
             settles: false,
         };
-        let mut ended = None;
-        for (number, planned) in (1..).zip(&self.moves) {
-            let moved = match planned {
-                TravelMove::Drive { from, to } => journey.drive(*from, *to, wheels),
-                TravelMove::Hop { hop, from, to } => journey.hop(hop, [*from, *to], (draws, wheels), &biases),
-            };
-            if let Err(outcome) = moved {
-                ended = Some((outcome, number));
-                break;
-            }
-        }
+        let ended = match options.policy {
+            Policy::OpenLoop => journey.as_planned((draws, wheels), &biases),
+            Policy::Replan => journey.replanning((draws, wheels), &biases, options.goal_tolerance_m),
+        };
         let goal_distance_m = (journey.at - self.goal.at).norm();
         let at_end = if goal_distance_m <= options.goal_tolerance_m { TrialOutcome::Reached } else { TrialOutcome::Missed };
-        let (outcome, ended_in) = ended.unwrap_or((TravelOutcome::Trial(at_end), 0));
+        let (outcome, ended_in) = ended.err().unwrap_or((TravelOutcome::Trial(at_end), 0));
         Tried { outcome, ended_in, time_s: journey.time_s, driven_m: journey.driven_m, goal_distance_m }
     }
 }
@@ -236,6 +247,14 @@ impl TravelMove {
     pub const fn from(&self) -> MapPosition {
         match self {
             Self::Drive { from, .. } | Self::Hop { from, .. } => *from,
+        }
+    }
+
+    /// The move as a robot at its beginning makes it.
+    fn choice(&self) -> Option<Choice> {
+        match self {
+            Self::Drive { to, .. } => Some(Choice::Drive(*to)),
+            Self::Hop { hop, from, to } => planned_command(hop, *from, *to).map(Choice::Hop),
         }
     }
 }
@@ -248,7 +267,6 @@ struct Journey<'t> {
     drive: DriveGround<'t>,
     rules: &'t Errors,
     errors: &'t Uncertainty,
-    policy: Policy,
     at: MapPoint,
     time_s: f64,
     driven_m: f64,
@@ -261,7 +279,60 @@ struct Journey<'t> {
 /// The end of a trial before the last move.
 type Ended = Result<(), TravelOutcome>;
 
+/// The same, with the number of the move.
+type EndedIn = Result<(), (TravelOutcome, usize)>;
+
 impl Journey<'_> {
+    /// Makes the planned moves from wherever it is.
+    fn as_planned(&mut self, (draws, wheels): (&mut TrialDraws, &mut ChaCha8Rng), biases: &Biases) -> EndedIn {
+        for (number, planned) in (1..).zip(&self.mission.moves) {
+            let moved = match planned {
+                TravelMove::Drive { from, to } => {
+                    self.drive(to.at - from.at, wheels).and_then(|on| if on { Ok(()) } else { Err(TravelOutcome::DriveStopped) })
+                }
+                TravelMove::Hop { hop, from, to } => {
+                    let drawn = self.rules.draw(draws, biases);
+                    planned_command(hop, *from, *to).map_or(Ok(()), |command| self.hop(command, &drawn))
+                }
+            };
+            moved.map_err(|outcome| (outcome, number))?;
+        }
+        Ok(())
+    }
+
+    /// Makes the planned moves where it believes to be at their beginnings, and else those by which least is left.
+    fn replanning(
+        &mut self,
+        (draws, wheels): (&mut TrialDraws, &mut ChaCha8Rng),
+        biases: &Biases,
+        goal_tolerance_m: f64,
+    ) -> EndedIn {
+        let mission = self.mission;
+        let most = MOVES_MOST.0 * mission.moves.len() + MOVES_MOST.1;
+        let mut tries = 0;
+        for number in 1..=most {
+            let drawn = self.rules.draw(draws, biases);
+            let [east_m, north_m] = drawn.position_m;
+            let lost = (TravelOutcome::Trial(TrialOutcome::Lost), number);
+            let believed = mission.planning.position(self.at + Vector2::new(east_m, north_m)).ok_or(lost)?;
+            if (believed.at - mission.goal.at).norm() <= goal_tolerance_m {
+                return Ok(());
+            }
+            let planned = mission.moves.iter().find(|planned| planned.from().at == believed.at).and_then(TravelMove::choice);
+            let to_go = || mission.to_go.as_ref()?.next(&self.drive, &mission.planning, &believed, mission.takeoff);
+            let choice = planned.or_else(to_go).ok_or((TravelOutcome::Trial(TrialOutcome::Stuck), number))?;
+            let moved = match choice {
+                Choice::Drive(to) => self.drive(to.at - believed.at, wheels),
+                Choice::Hop(command) => self.hop(command, &drawn).map(|()| true),
+            };
+            tries = if moved.map_err(|outcome| (outcome, number))? { 0 } else { tries + 1 };
+            if tries > TRIES_MOST {
+                return Err((TravelOutcome::DriveStopped, number));
+            }
+        }
+        Err((TravelOutcome::Trial(TrialOutcome::HopLimit), most))
+    }
+
     /// Time to settle after the landing before this move.
     fn settle(&mut self) {
         if std::mem::take(&mut self.settles) {
@@ -269,21 +340,21 @@ impl Journey<'_> {
         }
     }
 
-    /// Drives along a planned line, or to its end.
-    fn drive(&mut self, from: MapPosition, to: MapPosition, draws: &mut ChaCha8Rng) -> Ended {
+    /// Drives so far, with errors.
+    ///
+    /// # Returns
+    /// Whether the wheels hold on the way; it stays where they do not.
+    fn drive(&mut self, along: Vector2<f64>, draws: &mut ChaCha8Rng) -> Result<bool, TravelOutcome> {
         self.settle();
         let limits = self.mission.rover.limits();
         let uniforms = [0; 3].map(|_| draws.random::<f64>());
         let [heading, length] = self.errors.distribution.standard_pair([uniforms[0], uniforms[1]]);
-        let planned = match self.policy {
-            Policy::OpenLoop => to.at - from.at,
-            Policy::Replan => to.at - self.at,
-        };
         let (sine, cosine) = libm::sincos(limits.heading_sigma.radians() * heading);
-        let turned = Vector2::new(planned.x * cosine + planned.y * sine, planned.y * cosine - planned.x * sine);
+        let turned = Vector2::new(along.x * cosine + along.y * sine, along.y * cosine - along.x * sine);
         let target = self.at + turned * (1.0 + limits.length_sigma_fraction * length).max(0.0);
-        let position = |at: MapPoint| self.mission.planning.position(at).ok_or(TravelOutcome::DriveStopped);
-        let leg = self.drive.leg(&position(self.at)?, &position(target)?).map_err(|_| TravelOutcome::DriveStopped)?;
+        let places = [self.at, target].map(|at| self.mission.planning.position(at));
+        let [Some(from), Some(to)] = places else { return Ok(false) };
+        let Ok(leg) = self.drive.leg(&from, &to) else { return Ok(false) };
         if uniforms[2] < 1.0 - libm::exp(-limits.failure_per_m * leg.length_m) {
             return Err(TravelOutcome::DriveFailed);
         }
@@ -295,39 +366,16 @@ impl Journey<'_> {
         self.at = target;
         self.time_s += leg.time_s;
         self.driven_m += leg.length_m;
-        Ok(())
+        Ok(true)
     }
 
-    /// Flies a planned hop, or one to its landing.
-    fn hop(
-        &mut self,
-        hop: &Hop,
-        [from, to]: [MapPosition; 2],
-        (draws, wheels): (&mut TrialDraws, &mut ChaCha8Rng),
-        biases: &Biases,
-    ) -> Ended {
+    /// Flies a hop, with errors.
+    fn hop(&mut self, command: Command<MapPosition>, drawn: &HopErrors) -> Ended {
         self.settle();
-        let stuck = TravelOutcome::Trial(TrialOutcome::Stuck);
-        let planned = || {
-            let heading = (to.at - from.at).try_normalize(0.0)?;
-            Some(command(hop, heading, to))
-        };
-        let drawn = self.rules.draw(draws, biases);
-        let mut command = match self.policy {
-            Policy::OpenLoop => planned(),
-            Policy::Replan if self.at == from.at && drawn.position_m == [0.0; 2] => planned(),
-            Policy::Replan => self.replanned(to, drawn.position_m),
-        };
-        let mut returns = 0;
-        while command.is_none() && returns < RETURNS_MOST && self.policy == Policy::Replan && self.at != from.at {
-            self.drive(from, from, wheels)?;
-            command = self.replanned(to, drawn.position_m);
-            returns += 1;
-        }
-        let command = command.ok_or(stuck)?;
-        let here = self.ground.realized(self.mission.planning.position(self.at).ok_or(TravelOutcome::Trial(TrialOutcome::Lost))?);
+        let lost = TravelOutcome::Trial(TrialOutcome::Lost);
+        let here = self.ground.realized(self.mission.planning.position(self.at).ok_or(lost)?);
         let command = resting_at(&self.mission.whole, &here, command);
-        let liftoff = self.rules.liftoff(&command.liftoff, command.speed_m_s, &drawn);
+        let liftoff = self.rules.liftoff(&command.liftoff, command.speed_m_s, drawn);
         if !liftoff.stays() && !self.ground.holds_takeoff(&here, &liftoff) {
             return Err(TravelOutcome::Trial(TrialOutcome::SlidAtTakeoff));
         }
@@ -337,17 +385,11 @@ impl Journey<'_> {
         (self.settles, self.heading) = (true, None);
         flown.failure.map_or(Ok(()), |failure| Err(TravelOutcome::Trial(outcome_of(failure))))
     }
+}
 
-    /// The command from where the robot believes to be to a planned landing; `None` if no arc is feasible.
-    fn replanned(&self, to: MapPosition, [east_m, north_m]: [f64; 2]) -> Option<Command<MapPosition>> {
-        let ground = &self.mission.planning;
-        let believed = ground.position(self.at + Vector2::new(east_m, north_m))?;
-        let windows = ground.windows(&believed, &to)?;
-        let lofts = *windows.lofts.first()?;
-        let loft = ground.envelope().loft(self.mission.takeoff, windows.sight, lofts);
-        let (_, heading) = ground.course(&believed, &to)?;
-        Some(Command::of_arc(&Arc::new(windows.sight, loft, ground.gravity_m_s2()), heading, to))
-    }
+/// The command of a planned hop; `None` for one straight up.
+fn planned_command(hop: &Hop, from: MapPosition, to: MapPosition) -> Option<Command<MapPosition>> {
+    Some(command(hop, (to.at - from.at).try_normalize(0.0)?, to))
 }
 
 /// What trials add up to.

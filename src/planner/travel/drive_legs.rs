@@ -97,24 +97,23 @@ impl<'a> DriveLegs<'a> {
         Amounts::NONE.with(Amount::Distance, run_m * SHAVED).with(Amount::MissionTime, time_s * SHAVED)
     }
 
-    /// What a leg takes, with a turn of so many seconds before it.
-    ///
-    /// ```text
-    ///     mission time = time of the leg + turn,   energy = that of the leg + idle power per unit mass * turn,
-    ///     risk = failures per metre * length in three dimensions, the negative logarithm of the probability to arrive
-    /// ```
-    pub(super) fn amounts(&self, leg: &DriveLeg, turn_s: f64) -> Amounts {
-        let rover = self.rover();
-        Amounts::NONE
-            .with(Amount::MissionTime, leg.time_s + turn_s)
-            .with(Amount::Energy, leg.energy_j_kg + rover.idle_j_kg_s() * turn_s)
-            .with(Amount::Distance, leg.run_m)
-            .with(Amount::Risk, rover.limits().failure_per_m * leg.length_m)
-    }
-
     /// The time to turn from one direction to another, both unit vectors, s.
     pub(super) fn turn_s(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
         let angle = libm::atan2(from.perp(to).abs(), from.dot(to));
         self.rover().limits().turn_s_per_deg * angle.to_degrees()
     }
+}
+
+/// What a drive leg takes, with a turn of so many seconds before it.
+///
+/// ```text
+///     mission time = time of the leg + turn,   energy = that of the leg + idle power per unit mass * turn,
+///     risk = failures per metre * length in three dimensions, the negative logarithm of the probability to arrive
+/// ```
+pub(crate) fn drive_amounts(rover: &Rover, leg: &DriveLeg, turn_s: f64) -> Amounts {
+    Amounts::NONE
+        .with(Amount::MissionTime, leg.time_s + turn_s)
+        .with(Amount::Energy, leg.energy_j_kg + rover.idle_j_kg_s() * turn_s)
+        .with(Amount::Distance, leg.run_m)
+        .with(Amount::Risk, rover.limits().failure_per_m * leg.length_m)
 }

@@ -7,7 +7,7 @@ use super::{
         Amount, Amounts, LegGraph, LegVisitor, PathStep, Successor, SurfaceNode, SurfaceNodes, surface_hops::Side,
         surface_legs::LegOffers,
     },
-    drive_legs::{Arrival, DriveLegs},
+    drive_legs::{Arrival, DriveLegs, drive_amounts},
 };
 use crate::{
     ballistics::TakeoffChoice,
@@ -177,7 +177,7 @@ impl<'a> TravelLegs<'a> {
             self.counter.borrow_mut().pair()?;
             let (_, [first, last]) = self.side.in_order((node, at), (other, &to));
             if let Ok(leg) = drive.leg(first, last) {
-                visitor.visit(&Successor { node: state, command: DRIVEN, amounts: drive.amounts(&leg, turn_s) });
+                visitor.visit(&Successor { node: state, command: DRIVEN, amounts: drive_amounts(drive.rover(), &leg, turn_s) });
             }
         }
         Ok(())

@@ -16,6 +16,7 @@ mod mission;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use drive_legs::drive_amounts;
 pub use field::{Toward, TravelField, travel_field};
 pub use kind::Travel;
 pub use mission::{Mission, MissionFront, MissionMove, MissionPath, MissionQuestion, MissionWork, front_of_missions, travel};

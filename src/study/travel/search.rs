@@ -4,11 +4,12 @@ use super::super::{Case, CaseError, JourneyError, SimulateError, dem_ground::dem
 use crate::{
     ground::DemGround,
     planner::{
-        Amount, Mission, MissionFront, MissionQuestion, Objective, RouteQuestion, SearchedCommands, Travel, front_of_missions,
-        travel,
+        Amount, Budgets, Mission, MissionFront, MissionQuestion, Objective, RouteQuestion, SearchedCommands, Toward, Travel,
+        front_of_missions, travel, travel_field,
     },
     progress::Progress,
     scenario::{DriveKeys, Scenario},
+    uncertainty::TravelToGo,
 };
 
 /// The nodes and the wheels of a case.
@@ -57,6 +58,16 @@ impl TravelSearch {
     pub(super) fn by(&self, means: Travel, objective: &Objective, progress: &dyn Progress) -> Result<Mission, JourneyError> {
         let question = self.question(means, objective);
         Ok(travel(&self.free.ground, &self.free.nodes, &self.free.goal, &question, progress)?)
+    }
+
+    /// What the best missions take from all nodes to the goal, without budgets: by it a robot replans.
+    pub(super) fn to_go(self, progress: &dyn Progress) -> Result<TravelToGo, JourneyError> {
+        let mut question = self.question(self.keys.travel, &self.free.objective);
+        question.route.budgets = &Budgets::NONE;
+        let goal = self.free.nodes.place(self.free.goal.goal);
+        let asked = (&question, self.free.goal.takeoff, Toward::Start);
+        let field = travel_field((&self.free.ground, &self.free.nodes), goal.as_slice(), asked, progress)?;
+        Ok(TravelToGo { field, travel: self.keys.travel, nodes: self.free.nodes })
     }
 
     /// The front of hops against an amount.

@@ -3,6 +3,7 @@
 use super::{
     super::{JourneyError, SimulateOptions, dem_ground::dem_ground},
     plan::TravelPlanned,
+    search::TravelSearch,
     walk::Stretch,
 };
 use crate::{
@@ -38,15 +39,20 @@ pub fn travel_simulate(
     let policies = if options.compare { Policy::ALL.to_vec() } else { vec![keys.policy] };
     let mut warnings = planned.warnings.clone();
     let mut records = Vec::new();
-    if let Some((mission, legs)) = mission(&planned)? {
+    if let Some((mut mission, legs)) = mission(&planned)? {
+        if policies.contains(&Policy::Replan) {
+            mission.to_go = Some(TravelSearch::of(&planned.case)?.to_go(progress)?);
+        }
         warnings.extend(left_out(&scenario));
         let SimulateOptions { until_half_width, first_trial, .. } = *options;
         let trials = TrialOptions { first_trial, until_half_width, ..keys.options() };
-        let leg_of = |number: usize| number.checked_sub(1).and_then(|number| legs.get(number)).copied().unwrap_or(0);
         for policy in &policies {
             let trials = TrialOptions { policy: *policy, ..trials };
             let summary = mission.run(&keys.errors, &trials, progress).map_err(|error| Box::new(error.into()))?;
-            records.push(TravelTrialsRecord::new(&summary, &leg_of));
+            // The moves of a robot that replans are not those of the plan.
+            let of_plan = |number: usize| number.checked_sub(1).and_then(|number| legs.get(number)).copied().unwrap_or(0);
+            let leg_of: Option<&dyn Fn(usize) -> usize> = (*policy == Policy::OpenLoop).then_some(&of_plan);
+            records.push(TravelTrialsRecord::new(&summary, leg_of));
         }
     }
     let simulation = records.iter().find(|record| record.policy == keys.policy).cloned();
@@ -84,7 +90,8 @@ fn mission(planned: &TravelPlanned) -> Result<Option<(TravelMission, Vec<usize>)
     }
     let goal = path.places[path.places.len() - 1];
     let takeoff = planned.case.scenario.search.takeoff;
-    let mission = TravelMission { whole, planning: planned.ground.clone(), rover: keys.rover.clone(), moves, goal, takeoff };
+    let mission =
+        TravelMission { whole, planning: planned.ground.clone(), rover: keys.rover.clone(), moves, goal, takeoff, to_go: None };
     Ok(Some((mission, legs)))
 }
 
