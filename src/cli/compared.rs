@@ -5,7 +5,10 @@ use std::path::Path;
 use chta::{
     figure::{FigureError, Picture, SeenFrom},
     report::{CompareAnswer, CompareRow},
-    study::{CaseRecord, Compared, Comparison, MeshCompared, MeshComparison, MeshRouteQuestion, PlanOptions, mesh_route, plan},
+    study::{
+        CaseRecord, Compared, Comparison, MeshCompared, MeshComparison, MeshRouteQuestion, PlanOptions, TravelCompared,
+        TravelComparison, TravelOptions, mesh_route, plan, travel_plan,
+    },
 };
 
 use super::{
@@ -16,7 +19,7 @@ use super::{
     load::{
         EndOptions, Loaded, MeshPlanInput, comparison_document, is_over_mesh, load_mesh_scenario, load_scenario, relative_name,
     },
-    not_on_mesh, output,
+    not_for_travel, not_on_mesh, output,
     progress::Progress,
     wrong_thing::Role,
 };
@@ -28,6 +31,8 @@ pub(crate) enum AnyComparison {
     Chains(Vec<Loaded>, Comparison),
     /// Over one mesh.
     Mesh(Vec<MeshPlanInput>, MeshComparison),
+    /// Missions that drive.
+    Travel(Vec<Loaded>, TravelComparison),
 }
 
 impl AnyComparison {
@@ -36,6 +41,7 @@ impl AnyComparison {
         match self {
             Self::Chains(_, comparison) => &comparison.answer,
             Self::Mesh(_, comparison) => &comparison.answer,
+            Self::Travel(_, comparison) => &comparison.answer,
         }
     }
 
@@ -49,6 +55,10 @@ impl AnyComparison {
                 inputs.iter().map(MeshPlanInput::record).collect(),
                 comparison.compared.iter().flat_map(MeshCompared::warnings).collect(),
             ),
+            Self::Travel(loaded, comparison) => (
+                loaded.iter().map(|one| &one.record).collect(),
+                comparison.compared.iter().flat_map(TravelCompared::warnings).collect(),
+            ),
         };
         comparison_document(&records, warnings, self.answer())
     }
@@ -56,6 +66,7 @@ impl AnyComparison {
     /// The picture with all paths overlaid.
     pub(crate) fn picture(&self, seen_from: SeenFrom) -> Result<Picture, FigureError> {
         match self {
+            Self::Travel(..) => Err(FigureError::NoGround { what: "a comparison of missions".to_owned(), points: 0 }),
             Self::Chains(_, comparison) => comparison.picture(),
             Self::Mesh(_, comparison) => comparison.picture(seen_from),
         }
@@ -70,6 +81,14 @@ pub(crate) fn compare_all(args: &CompareArgs) -> Result<AnyComparison, Failure> 
     let over_mesh = args.scenarios.first().is_some_and(|file| is_over_mesh(file, &common(args)).unwrap_or(false));
     if !over_mesh {
         args.view.without_mesh()?;
+        if args.scenarios.first().is_some_and(|file| drives(file, args)) {
+            not_for_travel::refuse(&[
+                ("--prove", args.prove.prove, "bounds the hops along a profile"),
+                ("--plot", args.plot.is_some(), "draws hops over one another (chta plan --plot draws each mission)"),
+            ])?;
+            let (loaded, cases) = each(args, compared_travel)?;
+            return Ok(AnyComparison::Travel(loaded, TravelComparison::of(cases)));
+        }
         let (loaded, cases) = each(args, compared)?;
         return Ok(AnyComparison::Chains(loaded, Comparison::of(cases)));
     }
@@ -127,6 +146,21 @@ fn compared(file: &Path, args: &CompareArgs) -> Result<(Loaded, Compared), Failu
     let planned = plan(&loaded.case, options, &Progress::new(args.quiet))?;
     output::warn_all(args.quiet, &planned.warnings);
     Ok((loaded, Compared::of(planned, relative_name(file), &file.display().to_string())))
+}
+
+/// Whether a scenario drives; one that cannot be read is reported when it is planned.
+fn drives(file: &Path, args: &CompareArgs) -> bool {
+    let quiet = CommonArgs::of_scenarios(&args.set, args.accept_map_scale, args.input_max_gib, true);
+    load_scenario(file, &quiet, Purpose::Compare).is_ok_and(|loaded| loaded.case.scenario.drives().is_some())
+}
+
+/// Loads and plans one scenario that drives.
+fn compared_travel(file: &Path, args: &CompareArgs) -> Result<(Loaded, TravelCompared), Failure> {
+    let loaded = load_scenario(file, &common(args), Purpose::Compare)?;
+    loaded.ends()?;
+    let planned = travel_plan(&loaded.case, TravelOptions::default(), &Progress::new(args.quiet))?;
+    output::warn_all(args.quiet, &planned.warnings);
+    Ok((loaded, TravelCompared::of(planned, relative_name(file), &file.display().to_string())))
 }
 
 /// Loads and plans one scenario over a mesh.

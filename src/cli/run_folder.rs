@@ -8,8 +8,8 @@ use std::{
 use chta::{
     chain::csv::write_chain_csv,
     figure::SeenFrom,
-    report::{CrsRecord, DocumentKind, MapKnowledge, write_path_csv},
-    study::{MeshRouted, MeshSimulated, Planned, Simulated},
+    report::{CrsRecord, DocumentKind, MapKnowledge, write_path_csv, write_travel_csv},
+    study::{MeshRouted, MeshSimulated, Planned, Simulated, TravelPlanned, TravelSimulated},
 };
 
 use super::{
@@ -115,6 +115,24 @@ impl<'a> RunFolder<'a> {
         if let Some(drawn) = simulated.picture(&input.scenario) {
             self.files.push((TRIAL_PICTURES[0], output::encoded(drawn, Path::new(TRIAL_PICTURES[0]))?));
         }
+        Ok(())
+    }
+
+    /// Adds the legs of a mission that drives, the answer and its picture.
+    pub(crate) fn plan_of_travel(&mut self, planned: &TravelPlanned, loaded: &Loaded) -> Result<(), Failure> {
+        let mut path_csv = Vec::new();
+        write_travel_csv(&planned.answer.path, &mut path_csv).map_err(|error| Failure::message(format!("path.csv: {error}")))?;
+        let result = loaded.document(DocumentKind::PlanTravel, &planned.warnings, &planned.answer)?;
+        self.files.extend([("path.csv", path_csv), (RESULT, result.into_bytes())]);
+        self.files.push((PICTURE, output::encoded(planned.picture(), Path::new(PICTURE))?));
+        Ok(())
+    }
+
+    /// Adds the answer of the trials of a mission that drives, and its picture.
+    pub(crate) fn trials_of_travel(&mut self, simulated: &TravelSimulated, loaded: &Loaded) -> Result<(), Failure> {
+        let document = loaded.document(DocumentKind::SimulateTravel, &simulated.warnings, &simulated.answer)?;
+        self.files.push(("simulation.json", document.into_bytes()));
+        self.files.push((TRIAL_PICTURES[0], output::encoded(simulated.picture(), Path::new(TRIAL_PICTURES[0]))?));
         Ok(())
     }
 

@@ -243,7 +243,7 @@ fn search(scenario: &Scenario) -> Value {
         // Without one, the search is over several commands.
         ("takeoff_angle", (scenario.commands == SearchedCommands::Chosen).then(|| search.takeoff.name().into())),
         ("split", Some(search.split.name().into())),
-        ("risk", Some(scenario.risk.name().into())),
+        ("risk", scenario.drives().is_none().then(|| scenario.risk.name().into())),
         (
             "risk_extra_hops_max",
             (scenario.risk == ReliabilityUse::Traded).then_some(scenario.risk_extra_hops_max).flatten().map(Value::from),

@@ -63,6 +63,9 @@ pub(super) fn drive(
         let help = "give one of these: more neighbours find shorter ways and take more time";
         entries.problem(("drive", "neighbours"), ProblemKind::Value, message, help);
     }
+    if travel.drives() {
+        of_hops_alone(entries);
+    }
     match Rover::new(limits, hopper.mass_kg) {
         Ok(rover) => Some(DriveKeys { rover, travel }),
         Err(InvalidRover(problems)) => {
@@ -70,6 +73,18 @@ pub(super) fn drive(
                 refuse(entries, &problem);
             }
             None
+        }
+    }
+}
+
+/// Reports what chooses among paths of hops alone.
+fn of_hops_alone(entries: &mut Entries) {
+    let keys = [("search", "risk"), ("search", "risk_extra_hops_max"), ("budget", "estimated_success_min")];
+    for (table, name) in keys {
+        if entries.value(table, name).is_some() {
+            let message = format!("{table}.{name} chooses among paths of hops alone, and this scenario drives");
+            let help = "remove it, put risk into search.objective, or set drive.travel = \"hop\"";
+            entries.problem((table, name), ProblemKind::Conflict, message, help);
         }
     }
 }

@@ -134,7 +134,9 @@ impl Scenario {
         let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries, uncertainty.as_ref(), budget);
         // Nothing estimates the reliability of hops over a mesh.
         let over_mesh = matches!(terrain, Some(TerrainSource::MeshInSpace { .. }));
-        let (risk, risk_extra_hops_max) = if over_mesh { (ReliabilityUse::Ignored, None) } else { (risk, risk_extra_hops_max) };
+        // The time of a mission that drives is no count of hops beside which reliability is weighed; its objective may have risk.
+        let (risk, risk_extra_hops_max) =
+            if over_mesh || drives { (ReliabilityUse::Ignored, None) } else { (risk, risk_extra_hops_max) };
         super::budget::check(&mut entries, budget, risk, uncertainty.as_ref());
         let takeoff = wanted_angle.unwrap_or_else(|| super::trials::takeoff_choice(risk, uncertainty.as_ref()));
         let search = search(&mut entries, takeoff);

@@ -38,6 +38,7 @@ pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &P
     machine(&a.hopper) == machine(&b.hopper)
         && by_objective(a) == by_objective(b)
         && a.derating == b.derating
+        && a.drives() == b.drives()
         && estimated(a) == estimated(b)
         && a.body.gravity.m_s2() == b.body.gravity.m_s2()
         && a.search.spacing == b.search.spacing

@@ -4,21 +4,25 @@ use super::{
     Case, JourneyError,
     free_trials::route_with_success,
     journey::{self, Searched},
+    travel::{TravelOptions, TravelPlanned, travel_plan},
 };
 use crate::{
     graph::Outcome,
     path::{HopPath, generate},
     progress::Progress,
-    report::{CheckAnswer, ObjectiveRecord, SuccessBudgetRecord},
+    report::{CheckAnswer, ObjectiveRecord, SuccessBudgetRecord, TotalsRecord},
     scenario::Route,
 };
 
 /// The path of a case, and what its budgets say of it.
 #[derive(Clone, Debug)]
-pub(super) struct JourneyPath {
-    searched: Searched,
-    /// Of a free route: its answer and its path.
-    free: Option<(Box<CheckAnswer>, Option<HopPath>)>,
+pub(super) enum JourneyPath {
+    /// Along a transect.
+    Transect(Box<Searched>),
+    /// A free route: with its answer and its path.
+    Free(Box<Searched>, Box<CheckAnswer>, Option<HopPath>),
+    /// A mission that drives.
+    Travel(Box<TravelPlanned>),
 }
 
 impl JourneyPath {
@@ -27,41 +31,70 @@ impl JourneyPath {
     /// # Errors
     /// [`JourneyError`].
     pub(super) fn of(case: &Case, progress: &dyn Progress) -> Result<Self, JourneyError> {
+        if case.scenario.drives().is_some() {
+            return Ok(Self::Travel(Box::new(travel_plan(case, TravelOptions::default(), progress)?)));
+        }
         if case.scenario.route == Route::Free {
             let (route, searched) = route_with_success(case, progress)?;
             let searched = Searched { objective: route.check.objective.clone(), ..searched };
-            return Ok(Self { searched, free: Some((Box::new(route.check), route.path)) });
+            return Ok(Self::Free(Box::new(searched), Box::new(route.check), route.path));
         }
         let searched = journey::search(&case.hop_test(), case.ends()?, case, progress)?;
-        Ok(Self { searched, free: None })
+        Ok(Self::Transect(Box::new(searched)))
+    }
+
+    const fn searched(&self) -> Option<&Searched> {
+        match self {
+            Self::Transect(searched) | Self::Free(searched, ..) => Some(searched),
+            Self::Travel(_) => None,
+        }
     }
 
     /// The hops; `None` without a path.
     pub(super) fn hops(&self) -> Option<u64> {
-        self.searched.found.hops()
+        match self {
+            Self::Travel(planned) => planned.answer.hops,
+            Self::Transect(searched) | Self::Free(searched, ..) => searched.found.hops(),
+        }
     }
 
     /// What the budget of success says of it.
-    pub(super) const fn success(&self) -> Option<SuccessBudgetRecord> {
-        self.searched.success
+    pub(super) fn success(&self) -> Option<SuccessBudgetRecord> {
+        self.searched()?.success
     }
 
     /// What its objective and its budgets of totals say of it.
-    pub(super) const fn objective(&self) -> Option<&ObjectiveRecord> {
-        self.searched.objective.as_ref()
+    pub(super) fn objective(&self) -> Option<&ObjectiveRecord> {
+        match self {
+            Self::Travel(planned) => Some(&planned.answer.objective),
+            Self::Transect(searched) | Self::Free(searched, ..) => searched.objective.as_ref(),
+        }
     }
 
     /// Of a free route: its answer.
     pub(super) fn free_check(&self) -> Option<&CheckAnswer> {
-        self.free.as_ref().map(|(check, _)| check.as_ref())
+        match self {
+            Self::Free(_, check, _) => Some(check),
+            Self::Transect(_) | Self::Travel(_) => None,
+        }
     }
 
-    /// The path itself; `None` without one, or if it has too many hops to list.
-    pub(super) fn path(&self, case: &Case) -> Option<HopPath> {
-        if let Some((_, path)) = &self.free {
-            return path.clone();
+    /// What the path takes in all; `None` without one, or if it has too many hops to list.
+    pub(super) fn totals(&self, case: &Case) -> Option<TotalsRecord> {
+        match self {
+            Self::Travel(planned) => planned.totals_record(),
+            Self::Transect(_) | Self::Free(..) => self.path(case).map(|path| TotalsRecord::from(&path.totals)),
         }
-        let Outcome::Path { legs, .. } = &self.searched.found.outcome else { return None };
+    }
+
+    /// The path itself; `None` without one, of a mission that drives, or if it has too many hops to list.
+    pub(super) fn path(&self, case: &Case) -> Option<HopPath> {
+        let searched = match self {
+            Self::Travel(_) => return None,
+            Self::Free(_, _, path) => return path.clone(),
+            Self::Transect(searched) => searched,
+        };
+        let Outcome::Path { legs, .. } = &searched.found.outcome else { return None };
         let options = &case.scenario.search;
         generate(&case.hop_test(), legs, options.takeoff, options.split).ok()
     }

@@ -107,6 +107,7 @@ pub use trade::{CellError, Trade, TradeError, TradedCells, Varied, verdict};
 pub use traded::{Traded, trade};
 pub use trajectory::TrajectoryError;
 pub use travel::{
-    DriveDefect, ReachedBy, TravelMap, TravelOptions, TravelPlanned, TravelSimulated, travel_map, travel_plan, travel_simulate,
+    DriveDefect, ReachedBy, TravelCompared, TravelComparison, TravelMap, TravelOptions, TravelPlanned, TravelSimulated, travel_map,
+    travel_plan, travel_simulate,
 };
 pub use variation::Variation;

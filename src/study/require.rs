@@ -37,8 +37,8 @@ const fn capability(path: &'static str, more_is_more: bool, from: f64, to: f64) 
     Capability { path, more_is_more, from, to }
 }
 
-/// All keys for which a more capable value never removes a feasible hop.
-const CAPABILITIES: [Capability; 12] = [
+/// All keys for which a more capable value never removes a feasible hop or drive leg.
+const CAPABILITIES: [Capability; 18] = [
     capability("hopper.takeoff_speed_max_m_s", true, 0.01, 100.0),
     capability("hopper.landing_speed_max_m_s", true, 0.01, 100.0),
     capability(CLEARANCE, false, 0.0, 100.0),
@@ -51,6 +51,12 @@ const CAPABILITIES: [Capability; 12] = [
     capability("surface.friction_coefficient", true, 0.01, 10.0),
     capability("surface.rest_slope_max_deg", true, 0.0, 90.0),
     capability("body.gravity_m_s2", false, 0.001, 30.0),
+    capability("drive.speed_m_s", true, 0.001, 10.0),
+    capability("drive.slope_up_max_deg", true, 0.0, 90.0),
+    capability("drive.slope_down_max_deg", true, 0.0, 90.0),
+    capability("drive.cross_slope_max_deg", true, 0.0, 90.0),
+    capability("drive.step_max_m", true, 0.0, 10.0),
+    capability("drive.roughness_max_m", true, 0.0, 10.0),
 ];
 
 /// All keys that change no path that exists, but how reliably it is flown: with a wanted success, the least capable value that has it.
@@ -491,7 +497,7 @@ fn require_budgets(question: &Question<'_>, range: CapabilityRange, progress: &d
         tries: Vec::new(),
         hops: reached.and_then(|(_, tried)| tried.hops()),
         path: flown.as_ref().map(|path| HopRecord::rows(path, shown.prepared.projection.as_ref())).unwrap_or_default(),
-        totals: flown.as_ref().map(|path| TotalsRecord::from(&path.totals)),
+        totals: reached.and_then(|(_, tried)| tried.totals(&shown)),
         success: None,
         within_budgets: Some(record),
         derating: DeratingRecord::of(&first.scenario.derating),

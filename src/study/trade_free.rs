@@ -2,7 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::{Case, CellError, free_trials::route_with_success, physics::escape_warnings};
+use super::{
+    Case, CellError,
+    free_trials::route_with_success,
+    physics::escape_warnings,
+    travel::{TravelOptions, travel_plan},
+};
 use crate::{
     path::Hop,
     progress::Progress,
@@ -14,6 +19,9 @@ use crate::{
 /// # Errors
 /// [`CellError::Journey`].
 pub(super) fn free_row(case: &Case, values: BTreeMap<String, f64>, progress: &dyn Progress) -> Result<TradeRow, CellError> {
+    if case.scenario.drives().is_some() {
+        return travel_row(case, values, progress);
+    }
     let (route, _) = route_with_success(case, progress)?;
     let (scenario, check) = (&case.scenario, route.check);
     let path = route.path.filter(|_| check.is_traversable());
@@ -30,6 +38,27 @@ pub(super) fn free_row(case: &Case, values: BTreeMap<String, f64>, progress: &dy
         effort: check.effort.filter(|_| path.is_some()),
         success_budget: check.success_budget,
         by_objective: check.objective,
+        error: None,
+    })
+}
+
+/// The row of a mission that drives.
+fn travel_row(case: &Case, values: BTreeMap<String, f64>, progress: &dyn Progress) -> Result<TradeRow, CellError> {
+    let planned = travel_plan(case, TravelOptions::default(), progress)?;
+    let answer = &planned.answer;
+    let is_traversable = answer.is_traversable();
+    Ok(TradeRow {
+        values,
+        verdict: Some(answer.verdict),
+        hops: answer.hops.filter(|_| is_traversable),
+        lower_bound: None,
+        above_escape: !escape_warnings(&case.scenario, Some(case.prepared.chain.geometry())).is_empty(),
+        far_on_body: false,
+        totals: planned.totals_record().filter(|_| is_traversable),
+        margins: None,
+        effort: None,
+        success_budget: None,
+        by_objective: Some(answer.objective.clone()),
         error: None,
     })
 }

@@ -17,6 +17,7 @@ mod plan_travel;
 pub(super) mod require;
 pub(super) mod run;
 mod run_over_mesh;
+mod run_travel;
 pub(super) mod schema;
 pub(super) mod simulate;
 pub(super) mod slice;

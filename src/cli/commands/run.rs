@@ -7,7 +7,7 @@ use chta::{
     study::{PlanOptions, SimulateOptions, Trials, plan},
 };
 
-use super::run_over_mesh;
+use super::{run_over_mesh, run_travel};
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, RunArgs},
@@ -36,6 +36,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     }
     let loaded = load_scenario(&args.scenario, &common, Purpose::Run)?;
     loaded.ends()?;
+    if loaded.case.scenario.drives().is_some() {
+        return run_travel::run(args, &loaded);
+    }
     output::check_folder(&args.output)?;
     let mut folder = RunFolder::new(&args.output, args.trajectory.trajectory.as_deref())?;
     let in_time = TrajectoryFile::begin(&args.trajectory)?;

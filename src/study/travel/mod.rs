@@ -1,5 +1,6 @@
 //! Missions that drive, hop, or do both over a DEM: plans, what hopping buys, and fronts.
 
+mod compare;
 mod map;
 #[cfg(feature = "plot")]
 mod picture;
@@ -8,6 +9,7 @@ mod search;
 mod trials;
 mod walk;
 
+pub use compare::{TravelCompared, TravelComparison};
 pub use map::{ReachedBy, TravelMap, travel_map};
 pub use plan::{TravelOptions, TravelPlanned, travel_plan};
 pub use trials::{TravelSimulated, travel_simulate};

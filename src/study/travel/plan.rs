@@ -13,14 +13,14 @@ use crate::{
     drive::{DriveLeg, Extreme},
     graph::proof::ProofVerdict,
     ground::{DemGround, MapPosition, Surface},
-    path::{Hop, HopPath, heading_deg},
+    path::{Hop, HopPath, Totals, heading_deg},
     planner::{Amount, Amounts, Mission, Objective, Travel},
     progress::Progress,
     quantity::Angle,
     report::{
         DeratingRecord, DriveLegRecord, DriveMarginsRecord, DriveRefusalRecord, HopLegRecord, HopRecord, ObjectiveRecord,
-        PropellantShortage, TravelAlternativeRecord, TravelAnswer, TravelFrontRecord, TravelLegRecord, TravelSearchRecord,
-        TravelStopRecord, TravelSumsRecord, TravelTotalsRecord, hops_of,
+        PropellantShortage, TotalsRecord, TravelAlternativeRecord, TravelAnswer, TravelFrontRecord, TravelLegRecord,
+        TravelSearchRecord, TravelStopRecord, TravelSumsRecord, TravelTotalsRecord, hops_of,
     },
 };
 
@@ -70,6 +70,24 @@ impl TravelPlanned {
     /// Whether there is a path that the machine can travel.
     pub fn is_traversable(&self) -> bool {
         self.answer.is_traversable()
+    }
+
+    /// What it takes, as totals of paths are stated; `None` without a path.
+    pub(in crate::study) fn totals_record(&self) -> Option<TotalsRecord> {
+        let limits = self.ground.hopper().limits();
+        self.answer.totals.map(|totals| {
+            TotalsRecord::from(&Totals {
+                flight_time_s: totals.flight_time_s,
+                energy_j_kg: totals.energy_j_kg,
+                peak_takeoff_speed_m_s: totals.peak_takeoff_speed_m_s,
+                ground_distance_m: totals.distance_m,
+                energy_j: totals.energy_j,
+                mission_time_s: Some(totals.mission_time_s),
+                delta_v_m_s: totals.delta_v_m_s,
+                propellant_max_kg: limits.propellant_max_kg,
+                ..Totals::default()
+            })
+        })
     }
 }
 
