@@ -126,16 +126,6 @@ fn toml() -> impl Strategy<Value = String> {
             ("terrain", "dem") => ground == 1,
             ("terrain", "mesh" | "mesh_scale") => ground == 3,
             ("terrain", "start_m" | "goal_m" | "via_m") => (ground == 1 && !degrees) || ground == 3,
-            ("drive", _) => {
-                with("terrain", "dem", "x.tif");
-                with("terrain", "route", "free");
-                with("terrain", "start_m", "[0, 0]");
-                with("terrain", "goal_m", "[0, 0]");
-                with("hopper", "mass_kg", "50");
-                with("drive", "speed_m_s", "0.5");
-                with("drive", "slope_up_max_deg", "20");
-                with("drive", "wheelbase_m", "2");
-            }
             ("terrain", "start_lonlat_deg" | "goal_lonlat_deg" | "via_lonlat_deg") => ground == 1 && degrees,
             ("surface", "keep_out") => ground != 2,
             // Random speeds exclude each other more often than not.
@@ -280,6 +270,16 @@ fn every_key_reaches_the_document() {
                 with("terrain", "dem", "x.tif");
                 with("terrain", "start_m", "[0, 0]");
                 with("terrain", "goal_m", "[0, 0]");
+            }
+            ("drive", _) => {
+                with("terrain", "dem", "x.tif");
+                with("terrain", "route", "free");
+                with("terrain", "start_m", "[0, 0]");
+                with("terrain", "goal_m", "[0, 0]");
+                with("hopper", "mass_kg", "50");
+                with("drive", "speed_m_s", "0.5");
+                with("drive", "slope_up_max_deg", "20");
+                with("drive", "wheelbase_m", "2");
             }
             ("terrain", "start_lonlat_deg" | "goal_lonlat_deg") => {
                 with("terrain", "dem", "x.tif");
