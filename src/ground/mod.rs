@@ -36,7 +36,7 @@ pub use mesh::{
     BALL_STAND_OFF, BlockedSpan, MeshBuffers, MeshConflict, MeshContact, MeshContactFacet, MeshCourse, MeshGround, MeshPosition,
     MeshTakeoffSet, MeshWindow, MeshWindowEnd, NoMeshContact, UnknownGroup,
 };
-pub(crate) use posts::Offset;
+pub(crate) use posts::{Offset, OverlayTable};
 pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostHopsSize, PostRefusal};
 #[cfg(test)]
 pub(crate) use posts::{OffsetTable, Spacing};

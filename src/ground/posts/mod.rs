@@ -21,5 +21,6 @@ pub(crate) use offsets::Offset;
 #[cfg(test)]
 pub(crate) use offsets::{OffsetTable, Spacing};
 pub use post_hops::{Lofts, PostHops};
+pub(crate) use overlays::OverlayTable;
 pub use reach::PostHopsSize;
 pub use refusal::PostRefusal;
