@@ -30,8 +30,8 @@ impl DriveSense {
 /// the one over nodes of lower numbers counts, looked at from its far end. Results do not depend on the number of threads.
 ///
 /// # Memory
-/// [`DriveMap::bytes`]: 9 bytes a node where turns take nothing, otherwise 9 for every direction of every node; the way against the legs, and
-/// the queue, 4 bytes a node more each while it is made.
+/// [`DriveMap::bytes`]: while it is made, 9 bytes a node where turns take nothing, and 9 for every direction of every node and 16 a node
+/// otherwise; and 8 a node for the legs into it and the queue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveMap {
     sense: DriveSense,
@@ -85,33 +85,22 @@ impl DriveMap {
                 &against
             }
         };
-        let mut labels = Labels::new(states, bucket_width(edges));
-        for end in ends {
-            (0..states_per_node).for_each(|heading| labels.start(end * states_per_node + heading, 0.0));
-        }
+        let width = bucket_width(edges);
+        let mut labels = if turns.is_empty() { Labels::of_nodes(nodes, width) } else { Labels::of_headings(nodes, states_per_node, width) };
+        ends.iter().for_each(|end| labels.start(*end, 0.0));
         if turns.is_empty() {
             labels.run(&NodeArcs::new(edges, masks, sense.sign(), |_| 0.0), None, &meter)?;
         } else {
-            // Against the legs, what comes before in the search comes after on the way.
-            let turned = |a: usize, b: usize| if sense == DriveSense::From { (a, b) } else { (b, a) };
-            let count = states_per_node;
-            let turns: Vec<f64> = (0..count * count)
-                .map(|pair| {
-                    let (before, after) = turned(pair / count, pair % count);
-                    turns[before * count + after]
-                })
-                .collect();
             labels.run(&TurnArcs::new(edges, masks, sense.sign(), &turns), None, &meter)?;
         }
-        let (values, marks) = labels.into_parts();
-        let (costs, headings) = if turns.is_empty() { (values, Vec::new()) } else { best_headings(&values, states_per_node) };
+        let (costs, marks, headings) = labels.into_parts();
         Ok(Self { sense, amount: edges.amount(), costs, marks, headings, steps: edges.steps().to_vec() })
     }
 
     /// The bytes that a map of so many nodes takes while it is made, at most: `headings` is the number of directions where turns have a price, and
     /// 1 otherwise.
     pub const fn bytes(nodes: usize, headings: usize) -> u64 {
-        let of_node = 9 * headings as u64 + 8 + if headings > 1 { 9 } else { 0 };
+        let of_node = 9 * headings as u64 + 8 + if headings > 1 { 16 } else { 0 };
         (nodes as u64).saturating_mul(of_node)
     }
 
@@ -201,11 +190,11 @@ pub fn drive_path(edges: &DriveEdges<'_>, from: usize, to: usize, progress: &dyn
         let post = lattice.node(node);
         per_m * (map.post(post.row, post.col) - goal).norm()
     };
-    let mut labels = Labels::new(nodes, bucket_width(edges));
+    let mut labels = Labels::of_nodes(nodes, bucket_width(edges));
     labels.start(from, bound(from));
     labels.run(&NodeArcs::new(edges, edges.masks(), 1, bound), Some(to), &meter)?;
-    let (costs, marks) = labels.into_parts();
-    let found = DriveMap { sense: DriveSense::From, amount: edges.amount(), costs, marks, headings: Vec::new(), steps: edges.steps().to_vec() };
+    let (costs, marks, headings) = labels.into_parts();
+    let found = DriveMap { sense: DriveSense::From, amount: edges.amount(), costs, marks, headings, steps: edges.steps().to_vec() };
     Ok(found.way(to).zip(found.cost(to)).map(|(nodes, cost)| DriveWay { nodes, cost }))
 }
 
@@ -222,20 +211,6 @@ fn turns(edges: &DriveEdges<'_>) -> Vec<f64> {
     // The angle between two directions.
     let angle_deg = |((ax, ay), (bx, by)): ((f64, f64), (f64, f64))| libm::atan2((ax * by - ay * bx).abs(), ax * bx + ay * by).to_degrees();
     pairs.map(|pair| per_deg * angle_deg(pair)).collect()
-}
-
-/// The states of every node with the least label: that label and the heading.
-fn best_headings(values: &[f64], count: usize) -> (Vec<f64>, Vec<u8>) {
-    let best = |values: &[f64]| {
-        let mut best = (f64::INFINITY, NO_MARK);
-        for (heading, value) in (0..).zip(values) {
-            if *value < best.0 {
-                best = (*value, heading);
-            }
-        }
-        best
-    };
-    values.chunks_exact(count).map(best).unzip()
 }
 
 /// The width of the queue's buckets: the least cost of a leg, so that labels are set once. Where legs may cost nothing, a share of what level

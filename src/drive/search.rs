@@ -17,26 +17,50 @@ pub(super) struct Labels {
     pub(super) values: Vec<f64>,
     marks: Vec<u8>,
     queue: Buckets,
+    /// Of every node with several states, the least of their labels and its heading.
+    best: Vec<(f64, u8)>,
 }
 
 impl Labels {
-    /// Of so many states, with buckets of this width.
-    pub(super) fn new(states: usize, width: f64) -> Self {
-        Self { values: vec![f64::INFINITY; states], marks: vec![NO_MARK; states], queue: Buckets::new(width) }
+    /// Of nodes with one state each, with buckets of this width.
+    pub(super) fn of_nodes(nodes: usize, width: f64) -> Self {
+        Self { values: vec![f64::INFINITY; nodes], marks: vec![NO_MARK; nodes], queue: Buckets::new(width), best: Vec::new() }
     }
 
-    /// A state from which the search begins.
-    pub(super) fn start(&mut self, state: usize, key: f64) {
-        self.values[state] = 0.0;
-        self.marks[state] = NO_MARK;
-        self.queue.push(narrow(state), key);
+    /// Of nodes with a state for each of so many headings.
+    pub(super) fn of_headings(nodes: usize, headings: usize, width: f64) -> Self {
+        Self { best: vec![(f64::INFINITY, 0); nodes], ..Self::of_nodes(nodes * headings, width) }
     }
 
-    /// How a state was reached: its mark, less what the search keeps in it.
-    pub(super) fn into_parts(self) -> (Vec<f64>, Vec<u8>) {
-        let Self { values, mut marks, .. } = self;
+    /// A node from which the search begins, in any of its states.
+    pub(super) fn start(&mut self, node: usize, key: f64) {
+        let states = if self.best.is_empty() { 1 } else { self.values.len() / self.best.len() };
+        for state in node * states..(node + 1) * states {
+            self.values[state] = 0.0;
+            self.marks[state] = NO_MARK;
+            self.queue.push(narrow(state), key);
+        }
+        if let Some(best) = self.best.get_mut(node) {
+            *best = (0.0, 0);
+        }
+    }
+
+    /// The least label of every node, the mark of every state (how it was reached), and where nodes have several, the heading of the best.
+    pub(super) fn into_parts(self) -> (Vec<f64>, Vec<u8>, Vec<u8>) {
+        let Self { values, mut marks, best, .. } = self;
         marks.iter_mut().for_each(|mark| *mark &= !DONE);
-        (values, marks)
+        if best.is_empty() {
+            return (values, marks, Vec::new());
+        }
+        let (costs, headings) = best.into_iter().unzip();
+        (costs, marks, headings)
+    }
+
+    /// The least label with which a node is known to be reached at a heading: its own, or that of its best heading and the turn.
+    #[inline]
+    fn turned(&self, node: usize, heading: usize, turns: &[f64], headings: usize) -> f64 {
+        let (label, best) = self.best[node];
+        label + turns[usize::from(best) * headings + heading]
     }
 
     /// Offers a state a label from another one of label `from`.
@@ -160,11 +184,14 @@ impl<B: Fn(usize) -> f64> Arcs for NodeArcs<'_, B> {
 
 /// Nodes with a heading as states: of the leg before on the way from a start, of the leg after on the way to a goal. A mark is the heading of
 /// the state before or after.
+///
+/// A state is of no use where the best heading of its node and a turn on the spot cost no more: what follows costs no more from there either,
+/// since turning by way of a third heading is never shorter. Most states are left out so.
 pub(super) struct TurnArcs<'e> {
     edges: &'e DriveEdges<'e>,
     masks: &'e [u32],
     sign: isize,
-    /// What turning from one direction to another takes, row after row.
+    /// What turning between two directions takes, row after row; the same both ways.
     turns: &'e [f64],
 }
 
@@ -178,19 +205,31 @@ impl<'e> TurnArcs<'e> {
 impl Arcs for TurnArcs<'_> {
     #[inline]
     fn relax(&self, state: usize, labels: &mut Labels) {
-        let directions = self.edges.offsets().len();
-        let (node, heading) = (state / directions, state % directions);
+        let headings = self.edges.offsets().len();
+        let (node, heading) = (state / headings, state % headings);
         let from = labels.values[state];
+        let is_best = usize::from(labels.best[node].1) == heading;
+        if !is_best && labels.turned(node, heading, self.turns, headings) <= from {
+            return;
+        }
         let steps = self.edges.steps();
         for direction in ones(self.masks[node]) {
             let beyond = node.wrapping_add_signed(self.sign * steps[direction]);
-            let to = beyond * directions + direction;
-            let turned = from + self.turns[heading * directions + direction];
-            if labels.values[to] < turned + self.edges.least(direction) {
+            let to = beyond * headings + direction;
+            let turned = from + self.turns[heading * headings + direction];
+            let known = labels.values[to].min(labels.turned(beyond, direction, self.turns, headings));
+            if known < turned + self.edges.least(direction) {
                 continue;
             }
             let begin = if self.sign > 0 { node } else { beyond };
-            labels.offer(to, turned + self.edges.cost(begin, direction), from, mark_of(heading), self);
+            let value = turned + self.edges.cost(begin, direction);
+            if value > known {
+                continue;
+            }
+            labels.offer(to, value, from, mark_of(heading), self);
+            if value < labels.best[beyond].0 {
+                labels.best[beyond] = (value, mark_of(direction));
+            }
         }
     }
 
