@@ -28,13 +28,13 @@ OFFSETS = {8: [(1, 0), (1, 1)], 16: [(1, 0), (1, 1), (1, 2)], 32: [(1, 0), (1, 1
 
 
 def rough(side):
-    """Fractal ground, some metres high."""
+    """Fractal ground, too steep in a part."""
     random = np.random.default_rng(22)
     frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(side), np.fft.rfftfreq(side), indexing="ij"))
     frequency[0, 0] = np.inf
     spectrum = frequency**-2.2 * np.exp(2j * np.pi * random.random(frequency.shape))
     heights = np.fft.irfft2(spectrum, s=(side, side))
-    return (10.0 * heights / heights.std()).astype("<f4")
+    return (40.0 * heights / heights.std()).astype("<f4")
 
 
 def chta(heights, neighbours, slope_max_deg, spacing_m=SPACING_M):
