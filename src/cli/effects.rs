@@ -181,6 +181,7 @@ impl Purpose {
             ("search", "risk" | "risk_extra_hops_max") => by_risk,
             ("budget", "estimated_success_min") => by_risk || matches!(self, Self::Require | Self::Trade),
             ("budget", _) | ("search", "objective") => self.plans_by_objective(),
+            ("drive", _) => matches!(self, Self::Plan | Self::Map { .. }),
             // The trials of an estimate have a number and a seed of their own.
             ("uncertainty", "trials" | "seed") => flies,
             ("uncertainty", _) => flies || by_success || (errors && matches!(self, Self::Plan)) || (by_risk && weighs_risk),

@@ -51,11 +51,7 @@ impl DriveLimit {
     }
 }
 
-impl fmt::Display for DriveLimit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
+crate::quantity::by_name!(DriveLimit, DriveLimit::ALL);
 
 /// Why a leg is refused. Places are distances along the leg from its beginning, m; of slopes, the middle of the steepest piece.
 ///

@@ -1,5 +1,6 @@
 //! The hop path: its generation from the result of a search, and an independent checker that flies it again.
 
+mod drive_again;
 mod execute;
 mod generate;
 mod hop;
@@ -7,6 +8,7 @@ mod over_mesh;
 mod steps;
 mod timetable;
 
+pub use drive_again::{DriveViolation, DrivenAgain, drive_again};
 pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLimit, Violation, execute, execute_over_mesh};
 pub use generate::{PathError, TooManyHops, generate, generate_over};
 pub use hop::{Aim, Hop, HopPath, Propellant, RollOut, Totals, heading_deg};

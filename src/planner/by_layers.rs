@@ -63,14 +63,15 @@ pub(super) fn best_of_fewest(
     (objective, cap): (&Objective, LabelCap),
     meter: &Meter<'_>,
 ) -> Result<SearchResult, Cancelled> {
-    let (offers, (_, goal)) = (&legs.offers, legs.ends());
+    let (offers, (start, goal)) = (&legs.offers, legs.ends());
+    let start = SurfaceNode::of_index(start);
     let surface = offers.surface;
     let mut layers = Layers { offers, objective, labels: Vec::new(), last: 0, of_node: vec![NONE; surface.nodes.count()] };
     let mut capped = false;
-    if let Some(at) = surface.position(offers.start) {
-        layers.add(Label { node: offers.start, at, key: Key::default(), before: NONE, command: 0 });
+    if let Some(at) = surface.position(start) {
+        layers.add(Label { node: start, at, key: Key::default(), before: NONE, command: 0 });
     }
-    for left in (0..hops_left.of(offers.start).unwrap_or(0)).rev() {
+    for left in (0..hops_left.of(start).unwrap_or(0)).rev() {
         meter.check()?;
         let layer: Vec<SurfaceNode> = layers.labels[layers.last..].iter().map(|label| label.node).collect();
         let next = nodes_beside(surface, Side::Start, &layer, |node| hops_left.of(node) == Some(left));

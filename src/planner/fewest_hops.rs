@@ -125,10 +125,7 @@ impl FewestHops {
         // The shortest hop is the most likely one.
         for known in surface.nearest_first(node, &at, side.other()).filter(|known| self.hops[known.index()] == hops) {
             let Some(there) = surface.position(known) else { continue };
-            let (nodes, ends) = match side {
-                Side::Start => ([known, node], [&there, &at]),
-                Side::Goal => ([node, known], [&at, &there]),
-            };
+            let (nodes, ends) = side.in_order((known, &there), (node, &at));
             let Some(sight) = surface.sight(ends[0], ends[1]) else { continue };
             pairs += 1;
             counter.pair()?;

@@ -44,6 +44,11 @@ impl NodesPerPost {
         Self(((NODES_PER_HOP * post_spacing_m / hop_m).ceil() as u32).clamp(1, NODES_PER_POST_MOST))
     }
 
+    /// This number; 0 counts as 1.
+    pub fn of(per_post: usize) -> Self {
+        Self(u32::try_from(per_post).unwrap_or(u32::MAX).max(1))
+    }
+
     /// The number.
     pub const fn get(self) -> u32 {
         self.0

@@ -32,6 +32,7 @@ mod route_gap;
 mod search;
 mod surface_hops;
 mod surface_legs;
+mod travel;
 
 pub use amount::{Amount, Amounts};
 pub use bounds::LeastAmounts;
@@ -47,6 +48,10 @@ pub use objective::{Objective, ObjectiveProblem};
 pub use route_gap::RouteGap;
 pub use search::{FoundPath, LabelCap, LegGraph, LegVisitor, PathStep, SearchResult, Successor, UnmetBudget, search};
 pub use surface_legs::SurfaceLegs;
+pub use travel::{
+    Mission, MissionFront, MissionMove, MissionPath, MissionQuestion, MissionWork, Toward, Travel, TravelField, front_of_missions,
+    travel, travel_field,
+};
 
 #[cfg(test)]
 mod surface_tests;

@@ -117,6 +117,11 @@ impl SurfaceNodes {
         u32::try_from(self.lattice.count() + index).ok().map(SurfaceNode)
     }
 
+    /// The node of a column and a row of the lattice.
+    pub const fn lattice_node(&self, (i, j): (usize, usize)) -> SurfaceNode {
+        SurfaceNode::of_lattice(&self.lattice, (i, j))
+    }
+
     /// The single places.
     pub(super) fn single_places(&self) -> impl Iterator<Item = (SurfaceNode, MapPoint)> + '_ {
         let numbered = |(number, place): (usize, &MapPosition)| (SurfaceNode::of_index(number), place.at);

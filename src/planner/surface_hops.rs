@@ -26,6 +26,18 @@ pub(super) enum Side {
 }
 
 impl Side {
+    /// The nodes and places of a hop between one of this side and another one, in the order of flight.
+    pub(super) const fn in_order<'p>(
+        self,
+        (node, at): (SurfaceNode, &'p MapPosition),
+        (other, there): (SurfaceNode, &'p MapPosition),
+    ) -> ([SurfaceNode; 2], [&'p MapPosition; 2]) {
+        match self {
+            Self::Start => ([node, other], [at, there]),
+            Self::Goal => ([other, node], [there, at]),
+        }
+    }
+
     /// The other end.
     pub(super) const fn other(self) -> Self {
         match self {

@@ -16,6 +16,7 @@ use crate::{
     graph::MapJudge,
     ground::{DemGround, MapPosition, Surface},
     progress::{Cancelled, Meter, PairCounter},
+    quantity::MapPoint,
 };
 
 /// So many hops are computed by all threads: less work than some 50 microseconds is not worth waking them.
@@ -24,15 +25,38 @@ const SHARED_FROM: usize = 64;
 /// What the hops between nodes of a DEM take, for any thread.
 pub(super) struct LegOffers<'a> {
     pub(super) surface: &'a SurfaceHops<'a>,
-    pub(super) start: SurfaceNode,
+    settling: Settling,
     /// The choices of a hop, each with what judges its risk.
     commands: Vec<(TakeoffChoice, Option<MapJudge>)>,
     pub(super) least: LeastAmounts,
 }
 
+/// Which hops the machine settles for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Settling {
+    /// Before every hop but those from this node: where there are hops alone, the mission begins there.
+    BeforeAllBut(SurfaceNode),
+    /// After every hop but those that land here, where the mission ends.
+    AfterAllBut(MapPoint),
+    /// After every hop.
+    AfterAll,
+}
+
+impl Settling {
+    /// Whether none belongs to a hop.
+    fn is_spared(self, from: SurfaceNode, to: &MapPosition) -> bool {
+        match self {
+            Self::BeforeAllBut(start) => from == start,
+            Self::AfterAllBut(goal) => to.at == goal,
+            Self::AfterAll => false,
+        }
+    }
+}
+
 /// The graph of a DEM over a set of nodes, from a start to a goal.
 pub struct SurfaceLegs<'a> {
     pub(super) offers: LegOffers<'a>,
+    start: SurfaceNode,
     goal: (SurfaceNode, MapPosition),
     /// The fewest hops from nodes to the goal.
     hops_left: &'a FewestHops,
@@ -43,7 +67,7 @@ pub struct SurfaceLegs<'a> {
 
 impl std::fmt::Debug for SurfaceLegs<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("SurfaceLegs").field("start", &self.offers.start).field("goal", &self.goal).finish_non_exhaustive()
+        f.debug_struct("SurfaceLegs").field("start", &self.start).field("goal", &self.goal).finish_non_exhaustive()
     }
 }
 
@@ -64,9 +88,9 @@ struct Candidate {
 }
 
 impl<'a> LegOffers<'a> {
-    fn new(
+    pub(super) fn new(
         surface: &'a SurfaceHops<'a>,
-        start: SurfaceNode,
+        settling: Settling,
         (offered, takeoff): (SearchedCommands, TakeoffChoice),
         errors: Option<(&Uncertainty, &DemGround)>,
     ) -> Self {
@@ -80,7 +104,7 @@ impl<'a> LegOffers<'a> {
         let landing_m_s = if limits.landing.brakes() { f64::INFINITY } else { limits.landing_speed_max_m_s };
         let speeds_m_s = (limits.takeoff_speed_max_m_s, landing_m_s);
         let least = LeastAmounts::new(limits, ground.gravity_m_s2(), speeds_m_s, high_m - low_m);
-        Self { surface, start, commands, least }
+        Self { surface, settling, commands, least }
     }
 
     /// Gives a hop once for each of its distinct commands: the command's number, and what the hop takes with it.
@@ -93,10 +117,73 @@ impl<'a> LegOffers<'a> {
             if !known[..command].contains(&loft) {
                 let arc = Arc::new(hop.sight, loft, envelope.gravity_m_s2());
                 let risk = judge.as_ref().map_or(0.0, |judge| judge.estimate(to, hop.heading, (hop.sight, hop.lofts)));
-                give(number, Amounts::of_arc(&arc, limits, from == self.start).with(Amount::Risk, risk));
+                give(number, Amounts::of_arc(&arc, limits, self.settling.is_spared(from, to)).with(Amount::Risk, risk));
             }
             known[command] = loft;
         }
+    }
+
+    /// Visits every hop that begins at a node, or ends there, whose other end leads on, once for each of its distinct commands.
+    ///
+    /// # Returns
+    /// How many pairs of nodes were tested.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn visit(
+        &self,
+        (node, side): (SurfaceNode, Side),
+        leads_on: &dyn Fn(SurfaceNode) -> bool,
+        visitor: &mut dyn LegVisitor,
+        counter: &mut PairCounter<'_>,
+    ) -> Result<u64, Cancelled> {
+        let Some(at) = self.surface.position(node) else { return Ok(0) };
+        let candidates = self.candidates((node, &at, side), leads_on, visitor);
+        for _ in &candidates {
+            counter.pair()?;
+        }
+        let hop = |other: &Candidate| {
+            let (nodes, ends) = side.in_order((node, &at), (other.node, &other.at));
+            self.surface.between(nodes, ends, other.sight)
+        };
+        let hops: Vec<Option<Feasible>> = if candidates.len() < SHARED_FROM {
+            candidates.iter().map(hop).collect()
+        } else {
+            candidates.par_iter().map(hop).collect()
+        };
+        for (candidate, hop) in candidates.iter().zip(&hops) {
+            if let Some(hop) = hop {
+                let ([from, _], [_, to]) = side.in_order((node, &at), (candidate.node, &candidate.at));
+                self.each(from, to, hop, |command, amounts| {
+                    visitor.visit(&Successor { node: candidate.node.index(), command, amounts });
+                });
+            }
+        }
+        Ok(candidates.len() as u64)
+    }
+
+    /// The nodes to or from which a visitor may want a leg.
+    fn candidates(
+        &self,
+        (node, at, side): (SurfaceNode, &MapPosition, Side),
+        leads_on: &dyn Fn(SurfaceNode) -> bool,
+        visitor: &mut dyn LegVisitor,
+    ) -> Vec<Candidate> {
+        const ONE_HOP: Amounts = Amounts::NONE.with(Amount::Hops, 1.0);
+        let mut candidates = Vec::new();
+        for other in self.surface.about(at, side).filter(|other| *other != node && leads_on(*other)) {
+            // By the hops alone, which needs no ground.
+            if !visitor.may_improve(other.index(), &ONE_HOP) {
+                continue;
+            }
+            let Some(there) = self.surface.position(other) else { continue };
+            let (_, [from, to]) = side.in_order((node, at), (other, &there));
+            let Some(sight) = self.surface.sight(from, to) else { continue };
+            if visitor.wants(other.index(), &self.least.of_hop(sight.0)) {
+                candidates.push(Candidate { node: other, at: there, sight });
+            }
+        }
+        candidates
     }
 
     /// The choice of a command.
@@ -119,13 +206,13 @@ impl<'a> SurfaceLegs<'a> {
         (hops_left, counted): (&'a FewestHops, Counted),
         meter: &'a Meter<'_>,
     ) -> Self {
-        let offers = LegOffers::new(surface, start, (offered, takeoff), errors);
-        Self { offers, goal, hops_left, counted, counter: RefCell::new(meter.counter()), pairs: RefCell::new(0) }
+        let offers = LegOffers::new(surface, Settling::BeforeAllBut(start), (offered, takeoff), errors);
+        Self { offers, start, goal, hops_left, counted, counter: RefCell::new(meter.counter()), pairs: RefCell::new(0) }
     }
 
     /// Start and goal.
     pub(super) const fn ends(&self) -> (usize, usize) {
-        (self.offers.start.index(), self.goal.0.index())
+        (self.start.index(), self.goal.0.index())
     }
 
     /// Pairs of nodes whose hop was computed.
@@ -152,25 +239,6 @@ impl<'a> SurfaceLegs<'a> {
     pub(super) fn hops_of(path: &FoundPath) -> impl Iterator<Item = [SurfaceNode; 2]> + '_ {
         path.steps.iter().map(|step| [step.from, step.to].map(SurfaceNode::of_index))
     }
-
-    /// The nodes to which a visitor may want a leg.
-    fn candidates(&self, node: SurfaceNode, from: &MapPosition, visitor: &mut dyn LegVisitor) -> Vec<Candidate> {
-        const ONE_HOP: Amounts = Amounts::NONE.with(Amount::Hops, 1.0);
-        let leads_on = |next: &SurfaceNode| *next != node && (self.counted == Counted::All || self.hops_left.of(*next).is_some());
-        let mut candidates = Vec::new();
-        for next in self.offers.surface.about(from, Side::Start).filter(leads_on) {
-            // By the hops alone, which needs no ground.
-            if !visitor.may_improve(next.index(), &ONE_HOP) {
-                continue;
-            }
-            let Some(at) = self.offers.surface.position(next) else { continue };
-            let Some(sight) = self.offers.surface.sight(from, &at) else { continue };
-            if visitor.wants(next.index(), &self.offers.least.of_hop(sight.0)) {
-                candidates.push(Candidate { node: next, at, sight });
-            }
-        }
-        candidates
-    }
 }
 
 impl LegGraph for SurfaceLegs<'_> {
@@ -179,28 +247,10 @@ impl LegGraph for SurfaceLegs<'_> {
     }
 
     fn successors(&self, node: usize, visitor: &mut dyn LegVisitor) -> Result<(), Cancelled> {
-        let node = SurfaceNode::of_index(node);
         self.counter.borrow().check()?;
-        let Some(from) = self.offers.surface.position(node) else { return Ok(()) };
-        let candidates = self.candidates(node, &from, visitor);
-        for _ in &candidates {
-            self.counter.borrow_mut().pair()?;
-        }
-        self.count(candidates.len() as u64);
-        let surface = self.offers.surface;
-        let hop = |to: &Candidate| surface.between([node, to.node], [&from, &to.at], to.sight);
-        let hops: Vec<Option<Feasible>> = if candidates.len() < SHARED_FROM {
-            candidates.iter().map(hop).collect()
-        } else {
-            candidates.par_iter().map(hop).collect()
-        };
-        for (candidate, hop) in candidates.iter().zip(&hops) {
-            if let Some(hop) = hop {
-                self.offers.each(node, &candidate.at, hop, |command, amounts| {
-                    visitor.visit(&Successor { node: candidate.node.index(), command, amounts });
-                });
-            }
-        }
+        let leads_on = |next: SurfaceNode| self.counted == Counted::All || self.hops_left.of(next).is_some();
+        let of_node = (SurfaceNode::of_index(node), Side::Start);
+        self.count(self.offers.visit(of_node, &leads_on, visitor, &mut self.counter.borrow_mut())?);
         Ok(())
     }
 

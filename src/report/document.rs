@@ -23,6 +23,8 @@ pub enum DocumentKind {
     Plan,
     /// A path over a mesh: [`MeshPlanAnswer`](super::MeshPlanAnswer).
     PlanMesh,
+    /// A path of a scenario that drives: [`TravelAnswer`](super::TravelAnswer).
+    PlanTravel,
     /// A path, beside the other files of a run: [`PlanAnswer`](super::PlanAnswer).
     Run,
     /// A path over a mesh, beside the other files of a run: [`MeshPlanAnswer`](super::MeshPlanAnswer).
@@ -45,13 +47,15 @@ pub enum DocumentKind {
     Map,
     /// Hops to contacts all over a mesh: [`MeshMapAnswer`](super::MeshMapAnswer).
     MapMesh,
+    /// Missions to all nodes of a map, of a scenario that drives: [`TravelMapAnswer`](super::TravelMapAnswer).
+    MapTravel,
     /// What an answer takes before it is computed: [`SizeAnswer`](super::SizeAnswer).
     Size,
 }
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 21] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -59,6 +63,7 @@ impl DocumentKind {
         Self::CheckMesh,
         Self::Plan,
         Self::PlanMesh,
+        Self::PlanTravel,
         Self::Run,
         Self::RunMesh,
         Self::Simulate,
@@ -70,6 +75,7 @@ impl DocumentKind {
         Self::Fan,
         Self::Map,
         Self::MapMesh,
+        Self::MapTravel,
         Self::Size,
     ];
 
@@ -83,6 +89,7 @@ impl DocumentKind {
             Self::CheckMesh => "check-mesh",
             Self::Plan => "plan",
             Self::PlanMesh => "plan-mesh",
+            Self::PlanTravel => "plan-travel",
             Self::Run => "run",
             Self::RunMesh => "run-mesh",
             Self::Simulate => "simulate",
@@ -94,6 +101,7 @@ impl DocumentKind {
             Self::Fan => "fan",
             Self::Map => "map",
             Self::MapMesh => "map-mesh",
+            Self::MapTravel => "map-travel",
             Self::Size => "size",
         }
     }

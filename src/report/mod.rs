@@ -37,6 +37,9 @@ mod success_record;
 mod text;
 mod trade_answer;
 mod trajectory;
+mod travel_answer;
+mod travel_map_answer;
+mod travel_text;
 
 pub use advice::AdviceRecord;
 pub use check_answer::{
@@ -97,3 +100,9 @@ pub use success_record::{
 pub use text::{FurtherMeans, check_text, hop_text, path_text};
 pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow, with_unit};
 pub use trajectory::{trajectory_columns, write_trajectory_csv};
+pub use travel_answer::{
+    DriveLegRecord, DriveMarginsRecord, DriveRefusalRecord, HopLegRecord, TravelAlternativeRecord, TravelAnswer, TravelFrontRecord,
+    TravelLegRecord, TravelSearchRecord, TravelStopRecord, TravelSumsRecord, TravelTotalsRecord, write_travel_csv,
+};
+pub use travel_map_answer::{TravelGoalRecord, TravelMapAnswer, TravelReachRecord};
+pub use travel_text::travel_text;

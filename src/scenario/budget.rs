@@ -116,8 +116,16 @@ pub(super) fn check(entries: &mut Entries, budget: Budget, risk: ReliabilityUse,
     }
 }
 
+/// What is to be least where a machine drives, unless the scenario says otherwise: a count of hops alone would let it drive any detour.
+fn objective_of_travel() -> Option<Objective> {
+    Objective::new(vec![Amount::MissionTime, Amount::Hops, Amount::Energy]).ok()
+}
+
 /// The objective as given, and the commands that an edge offers to a search by objective, with the choice of take-off angle where none is
 /// given. Refuses what excludes it.
+///
+/// # Arguments
+/// `drives`: whether the machine drives, so that it plans by the time of the mission unless the scenario says otherwise.
 ///
 /// # Returns
 /// The objective; the commands, and the choice of take-off angle that the first amount wants, for a plan by objective.
@@ -126,8 +134,10 @@ pub(super) fn objective(
     budget: Budget,
     hopper: &Hopper,
     uncertainty: Option<&UncertaintyKeys>,
+    drives: bool,
 ) -> (Option<Objective>, SearchedCommands, Option<TakeoffChoice>) {
-    let objective = entries.objective("search", "objective");
+    let of_travel = || (drives && entries.text("search", "effort").is_none()).then(objective_of_travel).flatten();
+    let objective = entries.objective("search", "objective").or_else(of_travel);
     if objective.is_none() && !budget.limits_totals() {
         return (None, SearchedCommands::Chosen, None);
     }
@@ -164,7 +174,7 @@ pub(super) fn objective(
             Some(_) => {}
         }
     }
-    if objective.is_some() && entries.text("search", "effort").is_some() {
+    if entries.objective("search", "objective").is_some() && entries.text("search", "effort").is_some() {
         let message =
             "search has both objective and effort, expected one of the two: effort = \"x\" means objective = [\"hops\", \"x\"]";
         entries.problem(key, ProblemKind::Conflict, message.to_owned(), "remove effort");

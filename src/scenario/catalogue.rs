@@ -5,7 +5,7 @@ use crate::{
     ballistics::TakeoffChoice,
     graph::{Effort, ReliabilityUse},
     hop::Split,
-    planner::{Amount, Objective, roadmap::RoadmapPlanner},
+    planner::{Amount, Objective, Travel, roadmap::RoadmapPlanner},
     uncertainty::{Distribution, Policy},
     world::{ClearanceRule, LandingMode, RESTITUTION_MAX, SpeedLevels},
 };
@@ -55,6 +55,8 @@ pub enum Kind {
     Speeds,
     /// A list of amounts of a path, the first to be least, the next to break its ties.
     Amounts,
+    /// A list of pairs `[slope, share]`, a slope in degrees and the share of the speed lost on it, slopes ascending.
+    SlipCurve,
     /// Tables of groups of faces, by their names.
     FaceGroups,
     /// Any text.
@@ -131,6 +133,11 @@ impl Kind {
                 Amount::ALL.map(Amount::name).join(", "),
                 Amount::PeakSpeed
             ),
+            Self::SlipCurve => {
+                "a list of pairs [slope, share], slopes from -89 to 89 degrees ascending, shares of the speed lost from 0 to below 1, such as \
+                 [[0.0, 0.0], [20.0, 0.4]]"
+                    .to_owned()
+            }
             Self::FaceGroups => {
                 "a table for each group of faces, with friction_coefficient (a number from 0 to 1e6), rest_slope_max_deg (an angle \
                                  from 0 to 90 degrees, or inf) or keep_out (true or false), such as [surface.group.ice]"
@@ -178,12 +185,13 @@ const RELIABILITY_USES: [&str; 3] = [ReliabilityUse::ALL[0].name(), ReliabilityU
 const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const DISTRIBUTIONS: [&str; 2] = [Distribution::ALL[0].name(), Distribution::ALL[1].name()];
 const PLANNERS: [&str; 2] = [RoadmapPlanner::ALL[0].name(), RoadmapPlanner::ALL[1].name()];
+const TRAVELS: [&str; 3] = [Travel::ALL[0].name(), Travel::ALL[1].name(), Travel::ALL[2].name()];
 const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
 
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 101] = [
+pub const CATALOGUE: [Key; 118] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -422,6 +430,68 @@ pub const CATALOGUE: [Key; 101] = [
         Kind::Amounts,
         "instead of effort: what is to be least, and what breaks ties, over the distinct commands of every hop; absent: hops, then effort",
     ),
+    key("drive", "travel", Kind::Word(&TRAVELS), "what the machine does of hopping and driving; absent: both"),
+    key("drive", "speed_m_s", SPEED, "speed over level ground, m/s"),
+    key("drive", "slope_up_max_deg", Kind::AngleOrUnlimited, "steepest climb along the way, degrees; inf: any"),
+    key(
+        "drive",
+        "slope_down_max_deg",
+        Kind::AngleOrUnlimited,
+        "steepest descent along the way, degrees; inf: any; absent: as slope_up_max_deg",
+    ),
+    key(
+        "drive",
+        "cross_slope_max_deg",
+        Kind::AngleOrUnlimited,
+        "steepest slope across the way, degrees; inf: any; absent: as slope_up_max_deg",
+    ),
+    key(
+        "drive",
+        "step_max_m",
+        FROM_ZERO,
+        "greatest difference of height between two places a wheelbase apart along the way, m; needs wheelbase_m; absent: any",
+    ),
+    key(
+        "drive",
+        "roughness_max_m",
+        FROM_ZERO,
+        "greatest deviation from the plane fitted over a disc of the wheelbase at every node, m; needs wheelbase_m; absent: any",
+    ),
+    key("drive", "wheelbase_m", LENGTH, "distance between the axles, m"),
+    key(
+        "drive",
+        "neighbours",
+        Kind::Count { min: 8, max: 32 },
+        "to how many nodes about a node it drives in straight lines: 8, 16 or 32; absent: 16",
+    ),
+    key("drive", "turn_s_per_deg", FROM_ZERO, "time to turn on the spot between straight lines, s for each degree; absent: 0"),
+    key(
+        "drive",
+        "slip",
+        Kind::SlipCurve,
+        "share of the speed lost by slip over the slope along the way, straight between the pairs; absent: none",
+    ),
+    key("drive", "rolling_resistance", FROM_ZERO, "force to roll over level ground, as a share of the weight; absent: 0"),
+    key(
+        "drive",
+        "drive_efficiency",
+        Kind::Number { min: 1e-6, max: 1.0 },
+        "share of the energy from the store that moves it; absent: 1",
+    ),
+    key("drive", "idle_power_w", FROM_ZERO, "power from the store while it drives and turns, W; needs hopper.mass_kg; absent: 0"),
+    key("drive", "failure_per_m", FROM_ZERO, "rate of failures that end the mission, for each metre driven; absent: 0"),
+    key(
+        "drive",
+        "heading_sigma_deg",
+        SIGMA_ANGLE,
+        "standard deviation of the heading of a drive leg in trials, degrees; absent: 0",
+    ),
+    key(
+        "drive",
+        "length_sigma_fraction",
+        SHARE,
+        "standard deviation of the length of a drive leg in trials, as a fraction of it; absent: 0",
+    ),
     key("budget", "hops_max", Kind::Count { min: 1, max: 1_000_000 }, "greatest number of hops of a path"),
     key(
         "budget",
@@ -549,6 +619,14 @@ mod tests {
             "estimated_success_min",
             "hops_max",
             "objective",
+            "neighbours",
+            "turn_s_per_deg",
+            "slip",
+            "rolling_resistance",
+            "drive_efficiency",
+            "idle_power_w",
+            "failure_per_m",
+            "length_sigma_fraction",
             "takeoff_speed",
             "landing_speed",
             "friction",

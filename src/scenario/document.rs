@@ -2,11 +2,11 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Budget, Route, Scenario, TerrainSource, UncertaintyKeys};
+use super::{Budget, DriveKeys, Route, Scenario, TerrainSource, UncertaintyKeys};
 use crate::{
     graph::{PointSpacing, ReliabilityUse},
     planner::{SearchedCommands, roadmap::RoadmapPlanner},
-    quantity::AngleInterval,
+    quantity::{Angle, AngleInterval},
     terrain::{MapPlace, NoDataRule},
     world::{ClearanceRule, FaceGroup, Grip, RestSlope},
 };
@@ -22,6 +22,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     tables.insert("terrain".to_owned(), terrain(scenario, named));
     tables.insert("search".to_owned(), search(scenario));
     tables.insert("budget".to_owned(), budget(&scenario.budget));
+    tables.insert("drive".to_owned(), scenario.drive.as_ref().map_or_else(|| json!({}), drive));
     let derating = scenario.derating;
     let share = |share: f64| (share != 1.0).then(|| Value::from(share));
     tables.insert(
@@ -263,6 +264,32 @@ fn budget(budget: &Budget) -> Value {
         ("energy_max_j", budget.energy_max_j.map(Value::from)),
         ("delta_v_max_m_s", budget.delta_v_max_m_s.map(Value::from)),
         ("estimated_success_min", budget.estimated_success_min.map(Value::from)),
+    ])
+}
+
+fn drive(DriveKeys { rover, travel }: &DriveKeys) -> Value {
+    let limits = rover.limits();
+    let slope = |slope: Angle| if slope.degrees() >= 90.0 { Value::from("inf") } else { slope.written_degrees().into() };
+    let above_0 = |number: f64| (number != 0.0).then(|| Value::from(number));
+    let slip = limits.slip.points_deg();
+    object([
+        ("travel", Some(travel.name().into())),
+        ("speed_m_s", Some(limits.speed_m_s.into())),
+        ("slope_up_max_deg", Some(slope(limits.slope_up_max))),
+        ("slope_down_max_deg", limits.slope_down_max.map(slope)),
+        ("cross_slope_max_deg", limits.cross_slope_max.map(slope)),
+        ("step_max_m", limits.step_max_m.map(Value::from)),
+        ("roughness_max_m", limits.roughness_max_m.map(Value::from)),
+        ("wheelbase_m", limits.wheelbase_m.map(Value::from)),
+        ("neighbours", Some(limits.neighbours.count().into())),
+        ("turn_s_per_deg", above_0(limits.turn_s_per_deg)),
+        ("slip", (!slip.is_empty()).then(|| json!(slip))),
+        ("rolling_resistance", above_0(limits.rolling_resistance)),
+        ("drive_efficiency", (limits.efficiency != 1.0).then(|| limits.efficiency.into())),
+        ("idle_power_w", above_0(limits.idle_power_w)),
+        ("failure_per_m", above_0(limits.failure_per_m)),
+        ("heading_sigma_deg", above_0(limits.heading_sigma.written_degrees())),
+        ("length_sigma_fraction", above_0(limits.length_sigma_fraction)),
     ])
 }
 

@@ -2,7 +2,7 @@
 
 use super::{
     Kind,
-    entries::{fits, number},
+    values::{fits, number},
 };
 use crate::{
     quantity::Angle,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{
-    Budget, Entries, MeshSearch, Place, ProblemKind, Route, ScenarioProblem, TerrainSource, UncertaintyKeys,
+    Budget, DriveKeys, Entries, MeshSearch, Place, ProblemKind, Route, ScenarioProblem, TerrainSource, UncertaintyKeys,
     propulsion::{self, landing},
     terrain_source::{terrain, via},
 };
@@ -88,6 +88,8 @@ pub struct Scenario {
     pub derating: Derating,
     /// The errors of the trials, if the scenario has `[uncertainty]`.
     pub uncertainty: Option<UncertaintyKeys>,
+    /// How it drives, if the scenario has `[drive]`.
+    pub drive: Option<DriveKeys>,
     /// Title of the picture.
     pub title: Option<String>,
 }
@@ -119,9 +121,12 @@ impl Scenario {
         let mesh_search = super::mesh_search::mesh_search(&mut entries, terrain.as_ref());
         let [friction_raster, keep_out] = overlays(&mut entries, &surface, terrain.as_ref());
         let derating = super::derating::derating(&mut entries, &hopper, &surface);
+        let drive = super::drive::drive(&mut entries, terrain.as_ref(), route, hopper.limits());
+        let drives = drive.as_ref().is_some_and(|keys| keys.travel.drives());
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
         let budget = super::budget::budget(&entries);
-        let (objective, commands, wanted_angle) = super::budget::objective(&mut entries, budget, &hopper, uncertainty.as_ref());
+        let (objective, commands, wanted_angle) =
+            super::budget::objective(&mut entries, budget, &hopper, uncertainty.as_ref(), drives);
         let (objective, commands) = match mesh_search.planner {
             RoadmapPlanner::Exact => (objective, commands),
             RoadmapPlanner::Prm => (Some(super::mesh_planner::objective_of_prm()), SearchedCommands::Distinct),
@@ -165,12 +170,18 @@ impl Scenario {
             commands,
             derating,
             uncertainty,
+            drive,
             title: entries.text("report", "title").map(str::to_owned),
         })
     }
 }
 
 impl Scenario {
+    /// How it drives, where it does.
+    pub fn drives(&self) -> Option<&DriveKeys> {
+        self.drive.as_ref().filter(|keys| keys.travel.drives())
+    }
+
     /// Keys that hops over a DEM need and the scenario lacks (a chain file could supply them in its columns).
     pub fn lacks_on_a_dem(&self) -> Vec<LackingKey> {
         let no_grip = self.surface.grip.is_none() && self.friction_raster.is_none();

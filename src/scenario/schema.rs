@@ -48,6 +48,7 @@ fn of_kind(kind: Kind) -> Value {
         Kind::LonLat => pair(&[number(-180.0, 360.0), number(-90.0, 90.0)]),
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::MapPoints => list(of_kind(Kind::MapPoint), 0),
+        Kind::SlipCurve => list(pair(&[number(-89.0, 89.0), number(0.0, 1.0)]), 0),
         Kind::LonLats => list(of_kind(Kind::LonLat), 0),
         Kind::CountOrAuto => json!({ "anyOf": [{ "type": "integer", "minimum": 0, "maximum": 100_000 }, { "const": "auto" }] }),
         Kind::Count { min, max: MOST } => json!({ "type": "integer", "minimum": min }),

@@ -50,6 +50,19 @@ pub fn conditions(scenario: &Scenario) -> String {
     figure::conditions(body.name.as_deref().unwrap_or_default(), body.gravity.m_s2(), hopper, bounds_m_s, &format_ground(scenario))
 }
 
+/// The wheels of a machine that drives, in the words of its pictures; empty for another one.
+pub fn wheels(scenario: &Scenario) -> String {
+    let Some(keys) = scenario.drives() else { return String::new() };
+    let limits = keys.rover.limits();
+    let up = limits.slope_up_max.written_degrees();
+    let [down, across] = [limits.slope_down_max, limits.cross_slope_max].map(|slope| slope.map_or(up, Angle::written_degrees));
+    format!(
+        "wheels: {} m/s over level ground; slopes at most {up} deg up, {down} deg down, {across} deg across; {} neighbours",
+        limits.speed_m_s,
+        limits.neighbours.count()
+    )
+}
+
 /// The title of a picture: what it shows, and the scenario's title if it has one.
 pub(super) fn title(shown: &str, scenario: &Scenario) -> String {
     scenario.title.as_ref().map_or_else(|| shown.to_owned(), |name| format!("{shown}: {name}"))

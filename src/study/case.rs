@@ -87,6 +87,15 @@ pub enum CaseError {
         /// What is wanted, with its verb.
         question: &'static str,
     },
+    /// A question that is answered for hops alone.
+    #[error("{question} for hops alone, and this scenario drives: set drive.travel = \"hop\", or remove [drive]")]
+    HopsOnly {
+        /// What is wanted, with its verb.
+        question: &'static str,
+    },
+    /// A question about driving without wheels.
+    #[error("found no [drive], expected drive.speed_m_s and drive.slope_up_max_deg for a mission that drives")]
+    DriveOnly,
     /// A start or goal that is given nowhere.
     #[error("found no {name}, expected terrain.{name}_x_m, or for a dem or mesh terrain.{name}_m", name = which.name())]
     MissingEnd {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{
-    Case, CaseError, Commands, Defect, JourneyError, Prepared, SimulateError,
+    Case, CaseError, Commands, Defect, DriveDefect, JourneyError, Prepared, SimulateError,
     dem_ground::dem_ground,
     free_size::RouteSize,
     free_trials::commanded,
@@ -67,6 +67,9 @@ pub enum FreeRouteError {
     /// A route that does not pass the independent checker.
     #[error(transparent)]
     Defect(#[from] Defect),
+    /// A drive leg that does not.
+    #[error(transparent)]
+    Drive(DriveDefect),
 }
 
 impl From<RouteError> for JourneyError {
@@ -113,6 +116,14 @@ pub(super) fn free_alone(scenario: &Scenario, question: &'static str) -> Result<
     }
 }
 
+/// Refuses a scenario that drives.
+///
+/// # Errors
+/// [`CaseError::HopsOnly`].
+pub(super) fn hops_alone(scenario: &Scenario, question: &'static str) -> Result<(), CaseError> {
+    if scenario.drives().is_some() { Err(CaseError::HopsOnly { question }) } else { Ok(()) }
+}
+
 /// What a search for free routes is asked of.
 pub(super) struct FreeSearch {
     /// The case, for exact commands.
@@ -123,7 +134,7 @@ pub(super) struct FreeSearch {
     pub(super) goal: RouteGoal,
     ends: (Station, Station),
     /// What is to be least, and the greatest totals.
-    objective: Objective,
+    pub(super) objective: Objective,
     pub(super) budgets: Budgets,
     /// How many labels it may keep.
     pub(super) cap: LabelCap,

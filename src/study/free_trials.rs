@@ -3,7 +3,7 @@
 use super::{
     Case, FreeRouteError, JourneyError,
     dem_ground::dem_ground,
-    free_route::{FoundRoute, FreeSearch, Laid},
+    free_route::{FoundRoute, FreeSearch, Laid, hops_alone},
     front::{FlownJourney, RELIABLE},
     journey::Searched,
     objective::reliability,
@@ -55,6 +55,7 @@ struct Estimated {
 /// # Errors
 /// [`JourneyError`].
 pub(super) fn route_with_success(case: &Case, progress: &dyn Progress) -> Result<(FoundRoute, Searched), JourneyError> {
+    hops_alone(&case.scenario, "this question is answered")?;
     let search = FreeSearch::of(case)?;
     let route = search.route(progress)?;
     let laid = route.path.as_ref().map(|path| search.laid(path, search.case.scenario.commands)).transpose()?;

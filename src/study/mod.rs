@@ -68,12 +68,13 @@ mod trade;
 mod trade_free;
 mod traded;
 mod trajectory;
+mod travel;
 mod value_scan;
 mod variation;
 
 pub use alike::ask_the_same;
 #[cfg(feature = "plot")]
-pub use captions::conditions;
+pub use captions::{conditions, wheels};
 pub use case::{Case, CaseError, Commands};
 pub use check::{CheckError, Checked, CheckedPair, check, check_pairs};
 pub use compare::{Compared, Comparison, compare};
@@ -105,4 +106,5 @@ pub use swept_key::SweptKey;
 pub use trade::{CellError, Trade, TradeError, TradedCells, Varied, verdict};
 pub use traded::{Traded, trade};
 pub use trajectory::TrajectoryError;
+pub use travel::{DriveDefect, ReachedBy, TravelMap, TravelOptions, TravelPlanned, travel_map, travel_plan};
 pub use variation::Variation;

@@ -7,7 +7,7 @@ use crate::{
     report::{
         CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshCheckAnswer,
         MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer,
-        SizeAnswer, TradeAnswer,
+        SizeAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer,
     },
     scenario::scenario_schema,
 };
@@ -55,6 +55,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Plan | DocumentKind::Run => derived::<PlanAnswer>(),
         DocumentKind::CheckMesh => derived::<MeshCheckAnswer>(),
         DocumentKind::PlanMesh | DocumentKind::RunMesh => derived::<MeshPlanAnswer>(),
+        DocumentKind::PlanTravel => derived::<TravelAnswer>(),
         DocumentKind::Simulate => derived::<SimulateAnswer>(),
         DocumentKind::SimulateMesh => derived::<MeshSimulateAnswer>(),
         DocumentKind::SimulateExperiment => derived::<ExperimentAnswer>(),
@@ -64,6 +65,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Fan => derived::<FanAnswer>(),
         DocumentKind::Map => derived::<MapAnswer>(),
         DocumentKind::MapMesh => derived::<MeshMapAnswer>(),
+        DocumentKind::MapTravel => derived::<TravelMapAnswer>(),
         DocumentKind::Size => derived::<SizeAnswer>(),
     };
     close(&mut schema, false);

@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 100] = [
+const TELLING: [(&str, &str); 117] = [
     ("body.name", "moon"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -108,6 +108,23 @@ const TELLING: [(&str, &str); 100] = [
     ("uncertainty.policy", "open-loop"),
     ("uncertainty.trials", "77"),
     ("uncertainty.seed", "5"),
+    ("drive.travel", "drive"),
+    ("drive.speed_m_s", "0.5"),
+    ("drive.slope_up_max_deg", "30"),
+    ("drive.slope_down_max_deg", "30"),
+    ("drive.cross_slope_max_deg", "30"),
+    ("drive.step_max_m", "0.1"),
+    ("drive.roughness_max_m", "0.1"),
+    ("drive.wheelbase_m", "0.4"),
+    ("drive.neighbours", "8"),
+    ("drive.turn_s_per_deg", "1"),
+    ("drive.slip", "[[0, 0], [20, 0.5]]"),
+    ("drive.rolling_resistance", "0.2"),
+    ("drive.drive_efficiency", "0.5"),
+    ("drive.idle_power_w", "5"),
+    ("drive.failure_per_m", "0.01"),
+    ("drive.heading_sigma_deg", "3"),
+    ("drive.length_sigma_fraction", "0.1"),
 ];
 
 /// A scenario over a chain on which every limit can bind and trials fail now and then.

@@ -69,6 +69,7 @@ fn value(key: &Key) -> BoxedStrategy<String> {
             .prop_map(|points| format!("[{}]", points.join(", ")))
             .boxed(),
         Kind::CountOrAuto => prop_oneof![Just("\"auto\"".to_owned()), (0..=100_000_u32).prop_map(|k| k.to_string())].boxed(),
+        Kind::Count { .. } if key.name == "neighbours" => proptest::sample::select(vec!["8", "16", "32"]).prop_map(str::to_owned).boxed(),
         Kind::Count { min, max } => prop_oneof![
             Just(min.to_string()),
             Just(max.to_string()),
@@ -88,6 +89,12 @@ fn value(key: &Key) -> BoxedStrategy<String> {
                     format!("{name} = {{ friction_coefficient = {friction:?}, rest_slope_max_deg = {rest_deg:?}, keep_out = {keep_out} }}")
                 };
                 format!("{{ {} }}", groups.iter().map(group).collect::<Vec<_>>().join(", "))
+            })
+            .boxed(),
+        Kind::SlipCurve => proptest::collection::btree_map(-89..89_i32, 0.0..0.9_f64, 0..4)
+            .prop_map(|points| {
+                let points: Vec<_> = points.iter().map(|(slope, share)| format!("[{slope}.0, {share:?}]")).collect();
+                format!("[{}]", points.join(", "))
             })
             .boxed(),
         Kind::Amounts => proptest::sample::subsequence(Amount::ALL[..9].to_vec(), 1..4)
@@ -119,6 +126,16 @@ fn toml() -> impl Strategy<Value = String> {
             ("terrain", "dem") => ground == 1,
             ("terrain", "mesh" | "mesh_scale") => ground == 3,
             ("terrain", "start_m" | "goal_m" | "via_m") => (ground == 1 && !degrees) || ground == 3,
+            ("drive", _) => {
+                with("terrain", "dem", "x.tif");
+                with("terrain", "route", "free");
+                with("terrain", "start_m", "[0, 0]");
+                with("terrain", "goal_m", "[0, 0]");
+                with("hopper", "mass_kg", "50");
+                with("drive", "speed_m_s", "0.5");
+                with("drive", "slope_up_max_deg", "20");
+                with("drive", "wheelbase_m", "2");
+            }
             ("terrain", "start_lonlat_deg" | "goal_lonlat_deg" | "via_lonlat_deg") => ground == 1 && degrees,
             ("surface", "keep_out") => ground != 2,
             // Random speeds exclude each other more often than not.
@@ -245,6 +262,8 @@ fn every_key_reaches_the_document() {
         Kind::Amounts => "[\"energy\", \"hops\"]",
         Kind::FaceGroups => "{ ice = { friction_coefficient = 0.125, keep_out = true, rest_slope_max_deg = \"inf\" } }",
         Kind::MapPoints | Kind::LonLats => "[[12.5, -3.0], [1.0, 2.0]]",
+        Kind::SlipCurve => "[[-5.0, 0.0], [20.0, 0.25]]",
+        Kind::Count { .. } if key.name == "neighbours" => "32",
         Kind::CountOrAuto | Kind::Count { .. } => "7",
         Kind::Word(words) => words[words.len() - 1],
         Kind::Text if key.name == "name" => "vesta",

@@ -146,6 +146,7 @@ fn value_and_mistake(kind: Kind) -> (Value, Value) {
         Kind::Word(words) => (json!(words[0]), json!("other")),
         Kind::Speeds => (json!([1.0, 2.5]), json!([])),
         Kind::FaceGroups => (json!({ "ice": { "keep_out": true } }), json!({ "ice": {} })),
+        Kind::SlipCurve => (json!([[0.0, 0.0], [20.0, 0.4]]), json!([[0.0, 1.5]])),
         Kind::Amounts => (json!(["hops", "energy"]), json!(["fuel"])),
         Kind::Text => (json!("mars"), json!(" ")),
     }

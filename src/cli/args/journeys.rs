@@ -130,6 +130,9 @@ pub(crate) struct PlanArgs {
     /// Picture of the front (SVG or PNG) to write
     #[arg(long, value_name = "FILE", requires = "front")]
     pub(crate) plot_front: Option<PathBuf>,
+    /// Of a scenario with [drive]: the same journey by driving alone, by hops alone and by both, and the fewest hops that make it possible
+    #[arg(long)]
+    pub(crate) alternatives: bool,
     #[command(flatten)]
     pub(crate) trajectory: TrajectoryArgs,
     #[command(flatten)]
@@ -144,6 +147,18 @@ pub(crate) struct PlanArgs {
     pub(crate) roadmap: RoadmapArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
+}
+
+impl PlanArgs {
+    /// Refuses alternatives of a scenario that does not drive.
+    pub(crate) fn refuse_alternatives(&self) -> Result<(), Failure> {
+        if self.alternatives {
+            let text = "--alternatives: found this option for a scenario that does not drive, expected [drive] with travel = \"both\" or \"drive\": \
+                        leave the option out, or set drive.travel";
+            return Err(Failure::message(text.to_owned()));
+        }
+        Ok(())
+    }
 }
 
 /// The roadmap of a free route over a mesh

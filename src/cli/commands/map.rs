@@ -5,7 +5,7 @@ use chta::{
     study::map::PreparedMap,
 };
 
-use super::map_over_mesh;
+use super::{map_over_mesh, map_travel};
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs},
@@ -33,6 +33,9 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     }
     args.view.without_mesh()?;
     let input = MapInput::of(args)?;
+    if input.bare.scenario.drives().is_some() {
+        return map_travel::run(args, &input);
+    }
     let question = input.question(args);
     let prepared = PreparedMap::new(&question).map_err(|error| input.failure(&error))?;
     let (document, files) = (input.bare.document.clone(), raster_files_of(&input.bare)?);

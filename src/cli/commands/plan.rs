@@ -5,7 +5,7 @@ use chta::{
     study::{PlanOptions, plan, route_size},
 };
 
-use super::plan_over_mesh;
+use super::{plan_over_mesh, plan_travel};
 use crate::cli::{
     Answer, Failure,
     args::PlanArgs,
@@ -32,6 +32,10 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     let loaded =
         load_journey(&args.journey, &args.common, &args.search, Purpose::Plan, &[])?.within_memory(args.size.memory_max_bytes())?;
     loaded.ends()?;
+    if loaded.case.scenario.drives().is_some() {
+        return plan_travel::run(args, &loaded);
+    }
+    args.refuse_alternatives()?;
     if args.size.dry_run {
         let size = route_size(&loaded.case)?;
         return output::sized(&loaded.record.document(DocumentKind::Size, &[], size), args.answer.format);

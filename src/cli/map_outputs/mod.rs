@@ -3,6 +3,7 @@
 mod pictures;
 mod profiles;
 mod rasters;
+mod travel;
 
 use std::path::{Path, PathBuf};
 
@@ -11,6 +12,8 @@ use chta::{
     report::{MapKnowledge, paths_geojson, write_paths_csv},
     study::map::{MapStudy, PreparedMap},
 };
+
+pub(crate) use travel::TravelMapOutputs;
 
 use super::{
     Failure,
@@ -35,13 +38,7 @@ impl<'a> MapOutputs<'a> {
     }
 
     /// Writes all files or none.
-    pub(crate) fn write(
-        mut self,
-        args: &MapArgs,
-        input: &MapInput,
-        prepared: &PreparedMap,
-        study: &MapStudy,
-    ) -> Result<(), Failure> {
+    pub(crate) fn write(self, args: &MapArgs, input: &MapInput, prepared: &PreparedMap, study: &MapStudy) -> Result<(), Failure> {
         let projection = prepared.projection.as_ref();
         let mut files: Vec<(PathBuf, Vec<u8>)> = rasters::encoded(args, input, prepared, study)?;
         if let Some(file) = &args.paths {
@@ -65,14 +62,19 @@ impl<'a> MapOutputs<'a> {
         if let Some(file) = &args.plot {
             files.push((file.clone(), pictures::map(input, prepared, study, file)?));
         }
-        let mut opened = Vec::new();
-        for (file, bytes) in &files {
-            let place = self.opened.iter().position(|one| one.path() == file);
-            let pending = place.map_or_else(|| Pending::begin(file), |place| Ok(self.opened.swap_remove(place)))?;
-            opened.push((pending, bytes.clone()));
-        }
-        output::finish(opened)
+        finish(self.opened, &files)
     }
+}
+
+/// Writes all files or none; those that were not opened before are opened now.
+fn finish(mut begun: Vec<Pending<'_>>, files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
+    let mut opened = Vec::new();
+    for (file, bytes) in files {
+        let place = begun.iter().position(|one| one.path() == file);
+        let pending = place.map_or_else(|| Pending::begin(file), |place| Ok(begun.swap_remove(place)))?;
+        opened.push((pending, bytes.clone()));
+    }
+    output::finish(opened)
 }
 
 /// The rasters of the options, in the order in which they are opened.

@@ -10,6 +10,8 @@ mod panel;
 mod plan_view;
 mod raster;
 mod style;
+mod travel;
+mod travel_map;
 mod values;
 
 pub use data::{
@@ -23,6 +25,8 @@ pub(super) use panel::{goal_symbol, missed_symbol, scale_bar, start_symbol};
 pub use plan_view::PlanView;
 pub(super) use plan_view::{draw_plan_view, nearest_symbol};
 pub use style::RasterStyle;
+pub use travel::{TravelFigure, TravelLine, draw_travel};
+pub use travel_map::{TravelMapFigure, draw_travel_map};
 pub use values::draw_value_map;
 
 use super::FigureError;

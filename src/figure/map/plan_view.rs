@@ -18,7 +18,7 @@ use super::{
 use crate::{quantity::MapPoint, terrain::Dem};
 
 /// The ground, a single class here.
-const GROUND: RGBColor = RGBColor(205, 202, 196);
+pub(super) const GROUND: RGBColor = RGBColor(205, 202, 196);
 /// The greatest height of a plan view, which shares its page with the profile.
 const TALL_MM: f64 = 105.0;
 /// Above this number of hops only some of the landings have their number.

@@ -81,7 +81,7 @@ impl Steps {
         self.ends.len().saturating_sub(1)
     }
 
-    fn class(&self, value: f64) -> Option<usize> {
+    pub(super) fn class(&self, value: f64) -> Option<usize> {
         let above = self.ends.iter().skip(1).position(|&end| value <= end);
         above.filter(|_| value.is_finite())
     }

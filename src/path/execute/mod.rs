@@ -26,6 +26,12 @@ use crate::{
     world::Direction,
 };
 
+/// The greatest distance of the ground within a disc about a contact from the plane fitted over it, m, by rays; `None` where the ground is
+/// not known as far.
+pub(super) fn fitted_ground<S: Profiles>(ground: &S, at: &S::Contact, diameter_m: f64) -> Option<f64> {
+    footprint::fitted(ground, at, diameter_m).map(|fit| fit.residual_m)
+}
+
 /// The result of flying a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Execution {

@@ -1,8 +1,8 @@
 //! Why a question about a map has no answer.
 
-use super::super::{Defect, JourneyEnd, PipelineError};
+use super::super::{CaseError, Defect, JourneyEnd, PipelineError};
 use crate::{
-    planner::{Amount, Objective, TooManyNodes, TotalBudget},
+    planner::{Amount, Objective, RouteError, TooManyNodes, TotalBudget},
     quantity::MapPoint,
     reach::map::MapError,
     terrain::{MapBounds, TerrainError},
@@ -19,6 +19,12 @@ pub enum MapStudyError {
     /// The terrain, its overlays or its map.
     #[error(transparent)]
     Terrain(#[from] TerrainError),
+    /// A scenario that does not drive, where it should.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The search for missions.
+    #[error(transparent)]
+    Mission(#[from] RouteError),
     /// No start.
     #[error("found no start, expected at least one: give terrain.start_m, or the longitude and latitude terrain.start_lonlat_deg")]
     NoStart,

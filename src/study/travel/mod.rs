@@ -1,0 +1,12 @@
+//! Missions that drive, hop, or do both over a DEM: plans, what hopping buys, and fronts.
+
+mod map;
+#[cfg(feature = "plot")]
+mod picture;
+mod plan;
+mod search;
+mod walk;
+
+pub use map::{ReachedBy, TravelMap, travel_map};
+pub use plan::{TravelOptions, TravelPlanned, travel_plan};
+pub use walk::DriveDefect;

@@ -1,0 +1,301 @@
+//! Plans of missions.
+
+use super::super::{
+    Case, JourneyError,
+    free_route::left_out,
+    nodes::{coarse_nodes, level_hop_m},
+};
+use super::{
+    search::TravelSearch,
+    walk::{Driven, Stretch, agreed_sums, stretches},
+};
+use crate::{
+    drive::{DriveLeg, Extreme},
+    graph::proof::ProofVerdict,
+    ground::{DemGround, MapPosition, Surface},
+    path::{Hop, HopPath, heading_deg},
+    planner::{Amount, Amounts, Mission, Objective, Travel},
+    progress::Progress,
+    quantity::Angle,
+    report::{
+        DeratingRecord, DriveLegRecord, DriveMarginsRecord, DriveRefusalRecord, HopLegRecord, HopRecord, ObjectiveRecord,
+        PropellantShortage, TravelAlternativeRecord, TravelAnswer, TravelFrontRecord, TravelLegRecord, TravelSearchRecord,
+        TravelStopRecord, TravelSumsRecord, TravelTotalsRecord, hops_of,
+    },
+};
+
+/// What is wanted beside the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct TravelOptions {
+    /// The same journey by driving alone, by hops alone, by both, and with the fewest hops that make it possible.
+    pub alternatives: bool,
+    /// A front of hops against this amount.
+    pub front: Option<Amount>,
+}
+
+/// A planned mission, with everything that its views need.
+#[derive(Clone, Debug)]
+pub struct TravelPlanned {
+    /// What was asked.
+    pub case: Case,
+    /// The ground under the limits that planning may use.
+    pub ground: DemGround,
+    /// The result of the search.
+    pub mission: Mission,
+    pub(super) stretches: Vec<Stretch>,
+    /// The answer as plain data.
+    pub answer: TravelAnswer,
+    /// Warnings about the search and the path.
+    pub warnings: Vec<String>,
+}
+
+/// Plans the best mission by the objective of a scenario with `[drive]`, within its budgets; drives and flies it again.
+///
+/// # Errors
+/// [`JourneyError`].
+pub fn travel_plan(case: &Case, options: TravelOptions, progress: &dyn Progress) -> Result<TravelPlanned, JourneyError> {
+    let search = TravelSearch::of(case)?;
+    let mission = search.best(progress)?;
+    let walked = mission.path.as_ref().map(|path| stretches(&search, path)).transpose()?.unwrap_or_default();
+    let mut answer = answer(&search, &mission, &walked)?;
+    if options.alternatives {
+        answer.alternatives = Some(alternatives(&search, &mission, progress)?);
+    }
+    answer.front = options.front.map(|amount| front(&search, amount, progress)).transpose()?;
+    let warnings = warnings(&search, &mission);
+    Ok(TravelPlanned { case: search.free.case, ground: search.free.ground, mission, stretches: walked, answer, warnings })
+}
+
+impl TravelPlanned {
+    /// Whether there is a path that the machine can travel.
+    pub fn is_traversable(&self) -> bool {
+        self.answer.is_traversable()
+    }
+}
+
+/// What is to be known about the answer.
+fn warnings(search: &TravelSearch, mission: &Mission) -> Vec<String> {
+    let scenario = search.scenario();
+    let mut warnings = left_out(scenario);
+    let spacing_m = search.free.nodes.lattice().spacing_m();
+    if search.keys.travel.hops() {
+        warnings.extend(coarse_nodes(level_hop_m(&search.free.ground), "the mission", spacing_m));
+    }
+    let dem = search.free.ground.terrain().dem().georeference();
+    let post_m = dem.dx_m().max(dem.dy_m());
+    if let Some(wheelbase_m) = search.keys.rover.limits().wheelbase_m.filter(|wheelbase_m| post_m > *wheelbase_m) {
+        warnings.push(format!(
+            "the posts of the dem are {post_m} m apart, more than drive.wheelbase_m of {wheelbase_m} m: steps and rocks between posts are unknown, \
+             and no limit of [drive] sees them"
+        ));
+    }
+    if scenario.uncertainty.is_some() && search.keys.travel.hops() && !search.free.objective.amounts().contains(&Amount::Risk) {
+        warnings.push(format!(
+            "the mission is planned by the objective {}, not by reliability: hops of least amounts stand on the edge of their limits; simulate \
+             shows how reliably it is flown",
+            search.free.objective
+        ));
+    }
+    if mission.capped {
+        warnings.push(
+            "the search left out labels because there were too many: the path may not be the best, and another one may keep the budgets"
+                .to_owned(),
+        );
+    }
+    warnings
+}
+
+/// The same journey by other means over the same nodes.
+fn alternatives(
+    search: &TravelSearch,
+    planned: &Mission,
+    progress: &dyn Progress,
+) -> Result<Vec<TravelAlternativeRecord>, JourneyError> {
+    let objective = &search.free.objective;
+    let fewest = Objective::new([Amount::Hops, Amount::MissionTime].to_vec()).unwrap_or_else(|_| Objective::of(Amount::Hops));
+    let asked = [(Travel::Drive, objective), (Travel::Hop, objective), (Travel::Both, objective), (Travel::Both, &fewest)];
+    let mut rows = Vec::with_capacity(asked.len());
+    for (means, wanted) in asked {
+        let known = (means == search.keys.travel && wanted == objective).then(|| planned.clone());
+        let mission = known.map_or_else(|| search.by(means, wanted, progress), Ok)?;
+        let verdict = if mission.path.is_some() && mission.within { ProofVerdict::Traversable } else { ProofVerdict::Open };
+        let totals = mission.path.as_ref().map(|path| TravelSumsRecord::new(&path.totals));
+        rows.push(TravelAlternativeRecord { travel: means, objective: wanted.amounts().to_vec(), verdict, totals });
+    }
+    Ok(rows)
+}
+
+fn front(search: &TravelSearch, amount: Amount, progress: &dyn Progress) -> Result<TravelFrontRecord, JourneyError> {
+    let front = search.front(amount, progress)?;
+    for path in &front.paths {
+        agreed_sums(search, &stretches(search, path)?, &path.totals)?;
+    }
+    let paths = front.paths.iter().map(|path| TravelSumsRecord::new(&path.totals)).collect();
+    Ok(TravelFrontRecord { amount, labels_capped: front.capped, paths })
+}
+
+fn answer(search: &TravelSearch, mission: &Mission, walked: &[Stretch]) -> Result<TravelAnswer, JourneyError> {
+    let (free, scenario) = (&search.free, search.scenario());
+    let budgets = scenario.budget.totals(&scenario.hopper);
+    let found = mission.path.as_ref().map(|path| path.totals);
+    let objective = ObjectiveRecord::new(&free.objective, &budgets, (found, &mission.unmet, mission.capped));
+    let hops: Vec<Hop> = walked
+        .iter()
+        .flat_map(|stretch| match stretch {
+            Stretch::Hops(path) => path.hops.clone(),
+            Stretch::Drive(_) => Vec::new(),
+        })
+        .collect();
+    let flown = HopPath::of_hops(hops, free.ground.hopper());
+    let propellant_shortage = PropellantShortage::of(&flown.totals);
+    let is_traversable = mission.path.is_some() && propellant_shortage.is_none() && objective.is_met();
+    let ends =
+        [free.goal.start, free.goal.goal].map(|at| free.ground.position(at).map_or([at.x, at.y, f64::NAN], |place| point(&place)));
+    let totals = found.as_ref().map(|planned| totals(search, walked, (&flown, planned))).transpose()?;
+    let lattice = free.nodes.lattice();
+    let neighbours = search.keys.rover.limits().neighbours;
+    Ok(TravelAnswer {
+        travel: search.keys.travel,
+        start_m: ends[0],
+        goal_m: ends[1],
+        straight_line_m: (free.goal.goal - free.goal.start).norm(),
+        verdict: if is_traversable { ProofVerdict::Traversable } else { ProofVerdict::Open },
+        hops: found.as_ref().map(hops_of),
+        hops_lower_bound: 0,
+        objective,
+        derating: DeratingRecord::of(&scenario.derating),
+        propellant_shortage,
+        search: TravelSearchRecord {
+            nodes_per_post: lattice.nodes_per_post(),
+            node_spacing_m: lattice.spacing_m(),
+            nodes: free.nodes.count(),
+            neighbours: neighbours.count(),
+            elongation_max: neighbours.elongation(),
+            reached_nodes: mission.work.reached,
+            hops_tested: mission.work.hops_tested,
+            drives_tested: mission.work.drives_tested,
+        },
+        stopped: mission.stopped.as_ref().map(|(nearest, refusals)| TravelStopRecord {
+            nearest_m: point(nearest),
+            drive_refusals: DriveRefusalRecord::rows(refusals),
+        }),
+        verified: mission.path.as_ref().map(|_| true),
+        path: legs(search, walked, &flown),
+        totals,
+        alternatives: None,
+        front: None,
+    })
+}
+
+fn point(place: &MapPosition) -> [f64; 3] {
+    [place.at.x, place.at.y, place.z_m]
+}
+
+/// The sums over the legs, which are those of the search.
+fn totals(
+    search: &TravelSearch,
+    walked: &[Stretch],
+    (flown, planned): (&HopPath, &Amounts),
+) -> Result<TravelTotalsRecord, JourneyError> {
+    let (free, rover) = (&search.free, &search.keys.rover);
+    let [mission_time_s, energy_j_kg, distance_m] = agreed_sums(search, walked, planned)?;
+    let driven: Vec<&Driven> = walked
+        .iter()
+        .filter_map(|stretch| match stretch {
+            Stretch::Drive(driven) => Some(driven),
+            Stretch::Hops(_) => None,
+        })
+        .collect();
+    let legs = || driven.iter().flat_map(|driven| &driven.legs);
+    let sum = |of: fn(&DriveLeg) -> f64| legs().map(of).sum::<f64>();
+    let drive_length_m = sum(|leg| leg.length_m);
+    let rate = rover.limits().failure_per_m;
+    Ok(TravelTotalsRecord {
+        hops: flown.hops.len() as u64,
+        drive_legs: driven.len() as u64,
+        mission_time_s,
+        drive_time_s: sum(|leg| leg.time_s) + driven.iter().map(|driven| driven.turn_time_s).sum::<f64>(),
+        flight_time_s: flown.totals.flight_time_s,
+        energy_j_kg,
+        energy_j: free.ground.hopper().limits().mass_kg.map(|mass_kg| mass_kg * energy_j_kg),
+        delta_v_m_s: flown.totals.delta_v_m_s,
+        propellant_kg: flown.totals.propellant.map(|propellant| propellant.used_kg),
+        peak_takeoff_speed_m_s: flown.totals.peak_takeoff_speed_m_s,
+        distance_m,
+        drive_length_m,
+        climb_m: sum(|leg| leg.climb_m),
+        descent_m: sum(|leg| leg.descent_m),
+        drive_success: (rate > 0.0).then(|| libm::exp(-rate * drive_length_m)),
+    })
+}
+
+/// The legs as rows.
+fn legs(search: &TravelSearch, walked: &[Stretch], flown: &HopPath) -> Vec<TravelLegRecord> {
+    let projection = search.free.case.prepared.projection.as_ref();
+    let mut rows = HopRecord::rows(flown, projection).into_iter().zip(&flown.hops);
+    let (mut legs, mut travelled_m) = (Vec::new(), 0.0);
+    for stretch in walked {
+        match stretch {
+            Stretch::Drive(driven) => {
+                legs.push(TravelLegRecord::Drive(drive_leg(search, driven, legs.len() + 1)));
+                travelled_m += driven.legs.iter().map(|leg| leg.run_m).sum::<f64>();
+            }
+            Stretch::Hops(path) => {
+                for (mut row, hop) in rows.by_ref().take(path.hops.len()) {
+                    row.takeoff_x_m = travelled_m;
+                    travelled_m += hop.run_m();
+                    row.landing_x_m = travelled_m;
+                    legs.push(TravelLegRecord::Hop(Box::new(hop_leg(search, (row, hop), legs.len() + 1))));
+                }
+            }
+        }
+    }
+    legs
+}
+
+fn hop_leg(search: &TravelSearch, (row, hop): (HopRecord, &Hop), leg: usize) -> HopLegRecord {
+    let limits = search.free.ground.hopper().limits();
+    let ends_mission = hop.landing.map() == Some(search.free.goal.goal);
+    let settling_s = if ends_mission { 0.0 } else { limits.settling_s().unwrap_or(0.0) };
+    HopLegRecord {
+        leg,
+        takeoff_m: hop.takeoff.point_m.coords.into(),
+        landing_m: hop.landing.point_m.coords.into(),
+        time_s: limits.preparation_time_s.unwrap_or(0.0) + hop.flight_time_s + settling_s,
+        energy_j_kg: limits.store_energy_j_kg(0.5 * hop.takeoff_speed_m_s * hop.takeoff_speed_m_s, 1),
+        hop: row,
+    }
+}
+
+fn drive_leg(search: &TravelSearch, driven: &Driven, leg: usize) -> DriveLegRecord {
+    let Driven { places, legs, turn_time_s } = driven;
+    let rover = &search.keys.rover;
+    let sum = |of: fn(&DriveLeg) -> f64| legs.iter().map(of).sum::<f64>();
+    let (first, last) = (places[0], places[places.len() - 1]);
+    // The steepest of all lines, up or down, with its place.
+    let of_line = |(number, line): (usize, &DriveLeg)| {
+        let (up, down) = (line.steepest_up, line.steepest_down);
+        let (slope, Extreme { at_m, .. }) = if up.value >= down.value { (up.value, up) } else { (-down.value, down) };
+        let along = places[number + 1].at - places[number].at;
+        (slope, places[number].at + along * (at_m / line.run_m.max(f64::MIN_POSITIVE)))
+    };
+    let steepest = legs.iter().enumerate().map(of_line).max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+    let (slope, at) = steepest.unwrap_or((0.0, first.at));
+    DriveLegRecord {
+        leg,
+        takeoff_m: point(&first),
+        landing_m: point(&last),
+        heading_deg: heading_deg(first.at, last.at),
+        waypoints_m: places.iter().map(point).collect(),
+        length_m: sum(|leg| leg.length_m),
+        distance_m: sum(|leg| leg.run_m),
+        climb_m: sum(|leg| leg.climb_m),
+        descent_m: sum(|leg| leg.descent_m),
+        time_s: sum(|leg| leg.time_s) + turn_time_s,
+        turn_time_s: *turn_time_s,
+        energy_j_kg: sum(|leg| leg.energy_j_kg) + rover.idle_j_kg_s() * turn_time_s,
+        steepest_deg: Angle::from_slope(slope).degrees(),
+        steepest_at_m: at.into(),
+        margins: DriveMarginsRecord::of(legs, rover),
+    }
+}

@@ -1,0 +1,75 @@
+//! The search for a mission of a case.
+
+use super::super::{Case, CaseError, JourneyError, SimulateError, dem_ground::dem_ground, free_route::FreeSearch};
+use crate::{
+    ground::DemGround,
+    planner::{
+        Amount, Mission, MissionFront, MissionQuestion, Objective, RouteQuestion, SearchedCommands, Travel, front_of_missions,
+        travel,
+    },
+    progress::Progress,
+    scenario::{DriveKeys, Scenario},
+};
+
+/// The nodes and the wheels of a case.
+pub(super) struct TravelSearch {
+    pub(super) free: FreeSearch,
+    pub(super) keys: DriveKeys,
+    /// The whole ground, over which errors are flown.
+    whole: Option<DemGround>,
+}
+
+impl TravelSearch {
+    /// # Errors
+    /// [`JourneyError`], also for a scenario that does not drive.
+    pub(super) fn of(case: &Case) -> Result<Self, JourneyError> {
+        let keys = case.scenario.drive.clone().ok_or(CaseError::DriveOnly)?;
+        let free = FreeSearch::of(case)?;
+        let whole = dem_ground(&free.case).map_err(Box::new)?;
+        Ok(Self { free, keys, whole })
+    }
+
+    pub(super) const fn scenario(&self) -> &Scenario {
+        &self.free.case.scenario
+    }
+
+    /// What is asked, by these means and for this objective.
+    fn question<'q>(&'q self, travel: Travel, objective: &'q Objective) -> MissionQuestion<'q> {
+        let scenario = self.scenario();
+        let by_risk = objective.amounts().contains(&Amount::Risk);
+        let errors = scenario.uncertainty.as_ref().filter(|_| by_risk).map(|keys| &keys.errors);
+        let route = RouteQuestion {
+            objective,
+            budgets: &self.free.budgets,
+            commands: scenario.commands,
+            errors: errors.zip(self.whole.as_ref()),
+            cap: self.free.cap,
+        };
+        MissionQuestion { route, rover: &self.keys.rover, travel }
+    }
+
+    /// The best mission by the objective of the scenario.
+    pub(super) fn best(&self, progress: &dyn Progress) -> Result<Mission, JourneyError> {
+        self.by(self.keys.travel, &self.free.objective, progress)
+    }
+
+    /// The best mission by these means and for this objective.
+    pub(super) fn by(&self, means: Travel, objective: &Objective, progress: &dyn Progress) -> Result<Mission, JourneyError> {
+        let question = self.question(means, objective);
+        Ok(travel(&self.free.ground, &self.free.nodes, &self.free.goal, &question, progress)?)
+    }
+
+    /// The front of hops against an amount.
+    pub(super) fn front(&self, amount: Amount, progress: &dyn Progress) -> Result<MissionFront, JourneyError> {
+        let objective = Objective::of(amount);
+        let mut question = self.question(self.keys.travel, &objective);
+        question.route.commands = SearchedCommands::Distinct;
+        Ok(front_of_missions(&self.free.ground, &self.free.nodes, &self.free.goal, (amount, &question), progress)?)
+    }
+}
+
+impl From<SimulateError> for JourneyError {
+    fn from(error: SimulateError) -> Self {
+        Self::Trials(Box::new(error))
+    }
+}
