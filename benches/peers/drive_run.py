@@ -34,7 +34,7 @@ def rough(side):
     frequency[0, 0] = np.inf
     spectrum = frequency**-2.2 * np.exp(2j * np.pi * random.random(frequency.shape))
     heights = np.fft.irfft2(spectrum, s=(side, side))
-    return (40.0 * heights / heights.std()).astype("<f4")
+    return (20.0 * heights / heights.std()).astype("<f4")
 
 
 def chta(heights, neighbours, slope_max_deg, spacing_m=SPACING_M):

@@ -30,8 +30,8 @@ impl DriveSense {
 /// the one over nodes of lower numbers counts, looked at from its far end. Results do not depend on the number of threads.
 ///
 /// # Memory
-/// [`DriveMap::bytes`]: while it is made, 9 bytes a node where turns take nothing, and 9 for every direction of every node and 16 a node
-/// otherwise; and 8 a node for the legs into it and the queue.
+/// [`DriveMap::bytes`]: while it is made, 33 bytes a node where turns take nothing, and 17 for every direction of every node and 32 a node
+/// otherwise; 9, or 9 and one for every direction, once it is made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveMap {
     sense: DriveSense,
@@ -86,12 +86,12 @@ impl DriveMap {
             }
         };
         let width = bucket_width(edges);
-        let mut labels = if turns.is_empty() { Labels::of_nodes(nodes, width) } else { Labels::of_headings(nodes, states_per_node, width) };
+        let mut labels = if turns.is_empty() { Labels::of_nodes(masks, width) } else { Labels::of_headings(masks, states_per_node, width) };
         ends.iter().for_each(|end| labels.start(*end, 0.0));
         if turns.is_empty() {
-            labels.run(&NodeArcs::new(edges, masks, sense.sign(), |_| 0.0), None, &meter)?;
+            labels.run(&NodeArcs::new(edges, sense.sign(), |_| 0.0), None, &meter)?;
         } else {
-            labels.run(&TurnArcs::new(edges, masks, sense.sign(), &turns), None, &meter)?;
+            labels.run(&TurnArcs::new(edges, sense.sign(), &turns), None, &meter)?;
         }
         let (costs, marks, headings) = labels.into_parts();
         Ok(Self { sense, amount: edges.amount(), costs, marks, headings, steps: edges.steps().to_vec() })
@@ -100,7 +100,8 @@ impl DriveMap {
     /// The bytes that a map of so many nodes takes while it is made, at most: `headings` is the number of directions where turns have a price, and
     /// 1 otherwise.
     pub const fn bytes(nodes: usize, headings: usize) -> u64 {
-        let of_node = 9 * headings as u64 + 8 + if headings > 1 { 16 } else { 0 };
+        // A label and a mark of every state, or those and the costs that the map keeps; the legs into nodes and the queue; the best heading.
+        let of_node = 17 * headings as u64 + 16 + if headings > 1 { 16 } else { 0 };
         (nodes as u64).saturating_mul(of_node)
     }
 
@@ -190,9 +191,9 @@ pub fn drive_path(edges: &DriveEdges<'_>, from: usize, to: usize, progress: &dyn
         let post = lattice.node(node);
         per_m * (map.post(post.row, post.col) - goal).norm()
     };
-    let mut labels = Labels::of_nodes(nodes, bucket_width(edges));
+    let mut labels = Labels::of_nodes(edges.masks(), bucket_width(edges));
     labels.start(from, bound(from));
-    labels.run(&NodeArcs::new(edges, edges.masks(), 1, bound), Some(to), &meter)?;
+    labels.run(&NodeArcs::new(edges, 1, bound), Some(to), &meter)?;
     let (costs, marks, headings) = labels.into_parts();
     let found = DriveMap { sense: DriveSense::From, amount: edges.amount(), costs, marks, headings, steps: edges.steps().to_vec() };
     Ok(found.way(to).zip(found.cost(to)).map(|(nodes, cost)| DriveWay { nodes, cost }))

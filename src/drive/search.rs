@@ -13,31 +13,43 @@ const STATES_PER_REPORT: u64 = 1 << 16;
 /// The labels of all states, and the queue of those that are not done.
 #[derive(Debug)]
 pub(super) struct Labels {
-    /// The least cost found; infinite where none is.
-    pub(super) values: Vec<f64>,
-    marks: Vec<u8>,
+    cells: Vec<Cell>,
     queue: Buckets,
     /// Of every node with several states, the least of their labels and its heading.
     best: Vec<(f64, u8)>,
 }
 
+/// All that the search looks up of a state, in one place: it waits for memory more than for anything else.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    /// The least cost found; infinite where none is.
+    value: f64,
+    /// The directions of its node's arcs.
+    directions: u32,
+    /// How it was reached, and whether it is done.
+    mark: u8,
+}
+
 impl Labels {
-    /// Of nodes with one state each, with buckets of this width.
-    pub(super) fn of_nodes(nodes: usize, width: f64) -> Self {
-        Self { values: vec![f64::INFINITY; nodes], marks: vec![NO_MARK; nodes], queue: Buckets::new(width), best: Vec::new() }
+    /// Of nodes with one state each and arcs in these directions, with buckets of this width.
+    pub(super) fn of_nodes(masks: &[u32], width: f64) -> Self {
+        let cells = masks.iter().map(|directions| Cell { value: f64::INFINITY, directions: *directions, mark: NO_MARK }).collect();
+        Self { cells, queue: Buckets::new(width), best: Vec::new() }
     }
 
     /// Of nodes with a state for each of so many headings.
-    pub(super) fn of_headings(nodes: usize, headings: usize, width: f64) -> Self {
-        Self { best: vec![(f64::INFINITY, 0); nodes], ..Self::of_nodes(nodes * headings, width) }
+    pub(super) fn of_headings(masks: &[u32], headings: usize, width: f64) -> Self {
+        let states = masks.iter().flat_map(|directions| std::iter::repeat_n(*directions, headings));
+        let mut cells = Vec::with_capacity(masks.len() * headings);
+        cells.extend(states.map(|directions| Cell { value: f64::INFINITY, directions, mark: NO_MARK }));
+        Self { cells, queue: Buckets::new(width), best: vec![(f64::INFINITY, 0); masks.len()] }
     }
 
     /// A node from which the search begins, in any of its states.
     pub(super) fn start(&mut self, node: usize, key: f64) {
-        let states = if self.best.is_empty() { 1 } else { self.values.len() / self.best.len() };
+        let states = if self.best.is_empty() { 1 } else { self.cells.len() / self.best.len() };
         for state in node * states..(node + 1) * states {
-            self.values[state] = 0.0;
-            self.marks[state] = NO_MARK;
+            (self.cells[state].value, self.cells[state].mark) = (0.0, NO_MARK);
             self.queue.push(narrow(state), key);
         }
         if let Some(best) = self.best.get_mut(node) {
@@ -47,10 +59,10 @@ impl Labels {
 
     /// The least label of every node, the mark of every state (how it was reached), and where nodes have several, the heading of the best.
     pub(super) fn into_parts(self) -> (Vec<f64>, Vec<u8>, Vec<u8>) {
-        let Self { values, mut marks, best, .. } = self;
-        marks.iter_mut().for_each(|mark| *mark &= !DONE);
+        let Self { cells, best, .. } = self;
+        let marks = cells.iter().map(|cell| cell.mark & !DONE).collect();
         if best.is_empty() {
-            return (values, marks, Vec::new());
+            return (cells.iter().map(|cell| cell.value).collect(), marks, Vec::new());
         }
         let (costs, headings) = best.into_iter().unzip();
         (costs, marks, headings)
@@ -69,12 +81,12 @@ impl Labels {
     /// strictly better label does not need that: along a chain of predecessors labels never increase.
     #[inline]
     fn offer(&mut self, state: usize, value: f64, from: f64, mark: u8, arcs: &impl Arcs) {
-        if value < self.values[state] {
-            self.values[state] = value;
-            self.marks[state] = mark;
+        let cell = &mut self.cells[state];
+        if value < cell.value {
+            (cell.value, cell.mark) = (value, mark);
             self.queue.push(narrow(state), value + arcs.bound(state));
-        } else if value == self.values[state] && from < value && arcs.prefers(mark, self.marks[state] & !DONE) {
-            self.marks[state] = mark | (self.marks[state] & DONE);
+        } else if value == cell.value && from < value && arcs.prefers(mark, cell.mark & !DONE) {
+            cell.mark = mark | (cell.mark & DONE);
         }
     }
 
@@ -82,21 +94,22 @@ impl Labels {
     pub(super) fn run(&mut self, arcs: &impl Arcs, goal: Option<usize>, meter: &Meter<'_>) -> Result<(), Cancelled> {
         let (mut taken, mut visited) = (Vec::new(), 0);
         loop {
-            let (values, marks) = (&self.values, &self.marks);
+            let cells = &self.cells;
             let key = |state: u32| {
-                let state = state as usize;
-                (marks[state] & DONE == 0).then(|| values[state] + arcs.bound(state))
+                let cell = &cells[state as usize];
+                (cell.mark & DONE == 0).then(|| cell.value + arcs.bound(state as usize))
             };
             let Some(least) = self.queue.take(&mut taken, key) else { return Ok(()) };
             // Bounds round, so that a state a little beyond the goal is looked at too.
-            if goal.is_some_and(|goal| least > self.values[goal] * (1.0 + 1e-12)) {
+            if goal.is_some_and(|goal| least > self.cells[goal].value * (1.0 + 1e-12)) {
                 return Ok(());
             }
             for state in taken.iter().map(|state| *state as usize) {
-                if self.marks[state] & DONE != 0 {
+                let cell = &mut self.cells[state];
+                if cell.mark & DONE != 0 {
                     continue;
                 }
-                self.marks[state] |= DONE;
+                cell.mark |= DONE;
                 visited += 1;
                 if visited % STATES_PER_REPORT == 0 {
                     meter.set_done(visited / arcs.states_per_node(), arcs.nodes());
@@ -134,27 +147,26 @@ pub(super) trait Arcs {
 /// Nodes as states: turns take nothing. A mark is the direction of the leg.
 pub(super) struct NodeArcs<'e, B> {
     edges: &'e DriveEdges<'e>,
-    masks: &'e [u32],
     /// 1 along the legs, -1 against them.
     sign: isize,
     bound: B,
 }
 
 impl<'e, B: Fn(usize) -> f64> NodeArcs<'e, B> {
-    /// Along the legs of these nodes, or against them where `masks` are the directions into each node.
-    pub(super) const fn new(edges: &'e DriveEdges<'e>, masks: &'e [u32], sign: isize, bound: B) -> Self {
-        Self { edges, masks, sign, bound }
+    /// Along the legs between nodes (`sign` 1), or against them (-1) where the directions of labels are those into each node.
+    pub(super) const fn new(edges: &'e DriveEdges<'e>, sign: isize, bound: B) -> Self {
+        Self { edges, sign, bound }
     }
 }
 
 impl<B: Fn(usize) -> f64> Arcs for NodeArcs<'_, B> {
     #[inline]
     fn relax(&self, state: usize, labels: &mut Labels) {
-        let from = labels.values[state];
+        let Cell { value: from, directions, .. } = labels.cells[state];
         let steps = self.edges.steps();
-        for direction in ones(self.masks[state]) {
+        for direction in ones(directions) {
             let to = state.wrapping_add_signed(self.sign * steps[direction]);
-            if labels.values[to] < from + self.edges.least(direction) {
+            if labels.cells[to].value < from + self.edges.least(direction) {
                 continue;
             }
             let begin = if self.sign > 0 { state } else { to };
@@ -178,7 +190,7 @@ impl<B: Fn(usize) -> f64> Arcs for NodeArcs<'_, B> {
     }
 
     fn nodes(&self) -> u64 {
-        self.masks.len() as u64
+        self.edges.lattice().count() as u64
     }
 }
 
@@ -189,7 +201,6 @@ impl<B: Fn(usize) -> f64> Arcs for NodeArcs<'_, B> {
 /// since turning by way of a third heading is never shorter. Most states are left out so.
 pub(super) struct TurnArcs<'e> {
     edges: &'e DriveEdges<'e>,
-    masks: &'e [u32],
     sign: isize,
     /// What turning between two directions takes, row after row; the same both ways.
     turns: &'e [f64],
@@ -197,8 +208,8 @@ pub(super) struct TurnArcs<'e> {
 
 impl<'e> TurnArcs<'e> {
     /// As [`NodeArcs::new`], with the price of turns.
-    pub(super) const fn new(edges: &'e DriveEdges<'e>, masks: &'e [u32], sign: isize, turns: &'e [f64]) -> Self {
-        Self { edges, masks, sign, turns }
+    pub(super) const fn new(edges: &'e DriveEdges<'e>, sign: isize, turns: &'e [f64]) -> Self {
+        Self { edges, sign, turns }
     }
 }
 
@@ -207,17 +218,17 @@ impl Arcs for TurnArcs<'_> {
     fn relax(&self, state: usize, labels: &mut Labels) {
         let headings = self.edges.offsets().len();
         let (node, heading) = (state / headings, state % headings);
-        let from = labels.values[state];
+        let Cell { value: from, directions, .. } = labels.cells[state];
         let is_best = usize::from(labels.best[node].1) == heading;
         if !is_best && labels.turned(node, heading, self.turns, headings) <= from {
             return;
         }
         let steps = self.edges.steps();
-        for direction in ones(self.masks[node]) {
+        for direction in ones(directions) {
             let beyond = node.wrapping_add_signed(self.sign * steps[direction]);
             let to = beyond * headings + direction;
             let turned = from + self.turns[heading * headings + direction];
-            let known = labels.values[to].min(labels.turned(beyond, direction, self.turns, headings));
+            let known = labels.cells[to].value.min(labels.turned(beyond, direction, self.turns, headings));
             if known < turned + self.edges.least(direction) {
                 continue;
             }
@@ -242,7 +253,7 @@ impl Arcs for TurnArcs<'_> {
     }
 
     fn nodes(&self) -> u64 {
-        self.masks.len() as u64
+        self.edges.lattice().count() as u64
     }
 }
 
