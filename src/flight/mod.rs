@@ -22,7 +22,7 @@ pub(crate) use draws::TrialDraws;
 pub use error_key::ErrorKey;
 pub(crate) use hop::{Command, FlownHop};
 pub use hop_errors::DrawnErrors;
-pub(crate) use hop_errors::{Errors, HopErrors};
+pub(crate) use hop_errors::{Biases, Errors, HopErrors};
 pub(crate) use hop_trials::{HopTrials, JudgedHop, REPORTED_DRAWS, SEARCHED_DRAWS, Survival};
 pub use measured::MeasuredErrors;
 pub(crate) use measured::MeasuredRow;

@@ -33,6 +33,8 @@ pub enum DocumentKind {
     Simulate,
     /// Trials along a path over a mesh: [`MeshSimulateAnswer`](super::MeshSimulateAnswer).
     SimulateMesh,
+    /// Trials of a mission of a scenario that drives: [`TravelSimulateAnswer`](super::TravelSimulateAnswer).
+    SimulateTravel,
     /// An experiment with trials: [`ExperimentAnswer`](super::ExperimentAnswer).
     SimulateExperiment,
     /// The least capability: [`RequireAnswer`](super::RequireAnswer).
@@ -55,7 +57,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -68,6 +70,7 @@ impl DocumentKind {
         Self::RunMesh,
         Self::Simulate,
         Self::SimulateMesh,
+        Self::SimulateTravel,
         Self::SimulateExperiment,
         Self::Require,
         Self::Trade,
@@ -94,6 +97,7 @@ impl DocumentKind {
             Self::RunMesh => "run-mesh",
             Self::Simulate => "simulate",
             Self::SimulateMesh => "simulate-mesh",
+            Self::SimulateTravel => "simulate-travel",
             Self::SimulateExperiment => "simulate-experiment",
             Self::Require => "require",
             Self::Trade => "trade",

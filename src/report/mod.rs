@@ -39,6 +39,7 @@ mod trade_answer;
 mod trajectory;
 mod travel_answer;
 mod travel_map_answer;
+mod travel_simulate_answer;
 mod travel_text;
 
 pub use advice::AdviceRecord;
@@ -105,4 +106,7 @@ pub use travel_answer::{
     TravelLegRecord, TravelSearchRecord, TravelStopRecord, TravelSumsRecord, TravelTotalsRecord, write_travel_csv,
 };
 pub use travel_map_answer::{TravelGoalRecord, TravelMapAnswer, TravelReachRecord};
+pub use travel_simulate_answer::{
+    EndedInLegRecord, TravelOutcomeRecord, TravelSimulateAnswer, TravelTrialsRecord, travel_simulate_text,
+};
 pub use travel_text::travel_text;

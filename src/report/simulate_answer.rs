@@ -43,15 +43,18 @@ pub struct SuccessRequirement {
 impl SuccessRequirement {
     /// Whether trials show a success; without trials nothing is shown.
     pub fn of(success_min: f64, trials: Option<&SimulationRecord>) -> Self {
-        let low = trials.map(|trials| trials.success_rate_ci95[0]);
+        Self::of_low(success_min, trials.map(|trials| trials.success_rate_ci95[0]))
+    }
+
+    /// The same by the lower end of the 95 % interval; `None` without trials.
+    pub fn of_low(success_min: f64, low: Option<f64>) -> Self {
         Self { success_min, success_min_shown: low.is_some_and(|low| low >= success_min) }
     }
 
     /// The same as a sentence.
-    fn sentence(&self, trials: &SimulationRecord) -> String {
-        let Self { success_min, success_min_shown } = self;
-        let SimulationRecord { success_rate, success_rate_ci95: [low, _], .. } = trials;
-        if *success_min_shown {
+    pub(super) fn sentence(&self, success_rate: f64, [low, _]: [f64; 2]) -> String {
+        let Self { success_min, success_min_shown } = *self;
+        if success_min_shown {
             format!("a success of {success_min} is shown: the lower end of the 95 % interval is {low:.4}\n")
         } else if success_rate > success_min {
             format!(
@@ -113,7 +116,10 @@ pub(super) fn records_text(own: Option<&SimulationRecord>, compared: &[Simulatio
 
 /// Whether trials show the success that is required of them, if some is.
 pub(super) fn requirement_text(requirement: Option<SuccessRequirement>, trials: Option<&SimulationRecord>) -> String {
-    requirement.zip(trials).map(|(requirement, trials)| format!("\n{}", requirement.sentence(trials))).unwrap_or_default()
+    requirement
+        .zip(trials)
+        .map(|(requirement, trials)| format!("\n{}", requirement.sentence(trials.success_rate, trials.success_rate_ci95)))
+        .unwrap_or_default()
 }
 
 /// The results of the trials of one policy.

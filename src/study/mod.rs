@@ -106,5 +106,7 @@ pub use swept_key::SweptKey;
 pub use trade::{CellError, Trade, TradeError, TradedCells, Varied, verdict};
 pub use traded::{Traded, trade};
 pub use trajectory::TrajectoryError;
-pub use travel::{DriveDefect, ReachedBy, TravelMap, TravelOptions, TravelPlanned, travel_map, travel_plan};
+pub use travel::{
+    DriveDefect, ReachedBy, TravelMap, TravelOptions, TravelPlanned, TravelSimulated, travel_map, travel_plan, travel_simulate,
+};
 pub use variation::Variation;

@@ -7,7 +7,7 @@ use crate::{
     report::{
         CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshCheckAnswer,
         MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer,
-        SizeAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer,
+        SizeAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
     },
     scenario::scenario_schema,
 };
@@ -58,6 +58,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::PlanTravel => derived::<TravelAnswer>(),
         DocumentKind::Simulate => derived::<SimulateAnswer>(),
         DocumentKind::SimulateMesh => derived::<MeshSimulateAnswer>(),
+        DocumentKind::SimulateTravel => derived::<TravelSimulateAnswer>(),
         DocumentKind::SimulateExperiment => derived::<ExperimentAnswer>(),
         DocumentKind::Require => derived::<RequireAnswer>(),
         DocumentKind::Trade => derived::<TradeAnswer>(),

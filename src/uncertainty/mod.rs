@@ -60,6 +60,7 @@ mod scatter;
 mod simulation;
 mod summary;
 mod tally;
+mod travel;
 mod trial;
 mod wilson;
 
@@ -77,4 +78,5 @@ pub use scatter::HopScatter;
 pub use simulation::{ESTIMATE_TRIALS, FlightEnd, Simulation};
 pub use summary::{ErrorSummary, LandingEllipse, LandingSummary, RatePoint, Summary};
 pub use tally::{MergeProblem, Tally};
+pub use travel::{TravelMission, TravelMove, TravelOutcome, TravelSummary};
 pub use wilson::Wilson;

@@ -338,7 +338,7 @@ fn flown<G: FirstContact>(ground: &G, from: &G::Contact, liftoff: &LiftoffVeloci
 }
 
 /// The command of a planned hop along a heading.
-fn command<C: Copy>(hop: &Hop, heading: Vector2<f64>, aim: C) -> Command<C> {
+pub(super) fn command<C: Copy>(hop: &Hop, heading: Vector2<f64>, aim: C) -> Command<C> {
     let (sine, cosine) = libm::sincos(hop.takeoff_angle.radians());
     let speed_m_s = hop.takeoff_speed_m_s;
     let liftoff = LiftoffVelocity { heading, horizontal_m_s: speed_m_s * cosine, vertical_m_s: speed_m_s * sine };

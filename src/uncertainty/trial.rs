@@ -256,7 +256,7 @@ impl<G: FirstContact + Windows> Journey<'_, G> {
 }
 
 /// The outcome of a contact that does not hold.
-const fn outcome_of(failure: ContactFailure) -> TrialOutcome {
+pub(super) const fn outcome_of(failure: ContactFailure) -> TrialOutcome {
     match failure {
         ContactFailure::Slides => TrialOutcome::SlidAtLanding,
         ContactFailure::TooFast => TrialOutcome::Damaged,

@@ -5,8 +5,10 @@ mod map;
 mod picture;
 mod plan;
 mod search;
+mod trials;
 mod walk;
 
 pub use map::{ReachedBy, TravelMap, travel_map};
 pub use plan::{TravelOptions, TravelPlanned, travel_plan};
+pub use trials::{TravelSimulated, travel_simulate};
 pub use walk::DriveDefect;

@@ -2,6 +2,7 @@
 
 use super::{
     super::captions::{conditions, title, wheels},
+    TravelSimulated,
     plan::TravelPlanned,
     walk::{Driven, Stretch},
 };
@@ -23,12 +24,20 @@ impl TravelPlanned {
     /// # Errors
     /// [`FigureError`].
     pub fn picture(&self) -> Result<Picture, FigureError> {
+        self.picture_with(Vec::new())
+    }
+
+    /// The same with more lines above it.
+    fn picture_with(&self, lines: Vec<String>) -> Result<Picture, FigureError> {
         let at = |[x_m, y_m, _]: [f64; 3]| MapPoint::new(x_m, y_m);
         let answer = &self.answer;
         draw_travel(&TravelFigure {
             caption: Caption {
                 title: title("A mission that may drive and hop", &self.case.scenario),
-                lines: vec![conditions(&self.case.scenario), wheels(&self.case.scenario), self.result()],
+                lines: [conditions(&self.case.scenario), wheels(&self.case.scenario), self.result()]
+                    .into_iter()
+                    .chain(lines)
+                    .collect(),
             },
             dem: self.ground.terrain().dem(),
             start: at(answer.start_m),
@@ -87,5 +96,24 @@ impl TravelPlanned {
         };
         let profile = arc.into_iter().map(|(share, point)| ChainPoint::new(from_m + share * hop.run_m(), point.z_m)).collect();
         TravelLine { drives: false, plan, profile, ground }
+    }
+}
+
+impl TravelSimulated {
+    /// The picture of the plan, with what its trials show.
+    ///
+    /// # Errors
+    /// [`FigureError`].
+    pub fn picture(&self) -> Result<Picture, FigureError> {
+        let shown = self.answer.simulation.as_ref().map(|record| {
+            let [low, high] = record.success_ci95.map(|share| 100.0 * share);
+            format!(
+                "{} trials, {}: {:.1} % reach the goal (95 % interval {low:.1} to {high:.1} %)",
+                record.trials,
+                record.policy,
+                100.0 * record.success_rate
+            )
+        });
+        self.planned.picture_with(shown.into_iter().collect())
     }
 }

@@ -2,6 +2,7 @@
 
 mod experiment;
 mod over_mesh;
+mod travel;
 
 use chta::{
     report::{DocumentKind, simulate_text},
@@ -34,6 +35,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Simulate, &args.own_keys())?;
     if let Some(name) = &args.experiment {
         return experiment::run(args, &loaded, name);
+    }
+    if loaded.case.scenario.drives().is_some() {
+        return travel::run(args, &loaded);
     }
     // All options are checked before the search, which may take long.
     args.check(&loaded.case)?;
