@@ -36,9 +36,13 @@ fn main() {
         let slipping = RoverLimits { slip, ..slopes.clone() };
         let wheels = RoverLimits { step_max_m: Some(0.2), roughness_max_m: Some(0.1), wheelbase_m: Some(1.0), ..slopes.clone() };
         let turning = RoverLimits { turn_s_per_deg: 0.02, ..slopes.clone() };
-        for (name, limits) in
-            [("none", free), ("slopes", slopes), ("slopes, slip", slipping), ("slopes, step, roughness", wheels), ("slopes, turns", turning)]
-        {
+        for (name, limits) in [
+            ("none", free),
+            ("slopes", slopes),
+            ("slopes, slip", slipping),
+            ("slopes, step, roughness", wheels),
+            ("slopes, turns", turning),
+        ] {
             let rover = Rover::new(limits, None).expect("valid limits");
             row(&ground, &rover, name);
         }

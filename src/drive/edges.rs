@@ -93,8 +93,17 @@ impl<'a> DriveEdges<'a> {
         let meter = Meter::with_total(progress, Stage::DriveLegs, lattice.rows as u64);
         let of_posts = lattice.stride == 1 && lattice.per_post == 1;
         let prices = if of_posts { Prices::Posts(PostPrices::new(drive, amount, &offsets)) } else { Prices::Stored(Vec::new()) };
-        let mut edges =
-            Self { drive, lattice, offsets, steps, masks: Vec::new(), prices, amount, least, refusals: DriveRefusalCounts::default() };
+        let mut edges = Self {
+            drive,
+            lattice,
+            offsets,
+            steps,
+            masks: Vec::new(),
+            prices,
+            amount,
+            least,
+            refusals: DriveRefusalCounts::default(),
+        };
         if of_posts {
             edges.judge_posts(&meter)?;
         } else {
@@ -147,12 +156,26 @@ impl<'a> DriveEdges<'a> {
         node.wrapping_add_signed(self.steps[direction])
     }
 
+    /// The node from which an allowed leg in a direction leads to a node.
+    #[inline]
+    pub fn behind(&self, node: usize, direction: usize) -> usize {
+        node.wrapping_add_signed(-self.steps[direction])
+    }
+
     /// What an allowed leg takes.
     #[inline]
     pub fn cost(&self, node: usize, direction: usize) -> f64 {
         match &self.prices {
             Prices::Posts(prices) => prices.cost(node, direction),
             Prices::Stored(costs) => costs[node * self.offsets.len() + direction],
+        }
+    }
+
+    /// All that an allowed leg between posts takes, its extremes left out; `None` where the nodes are not the posts.
+    pub fn sums(&self, node: usize, direction: usize) -> Option<DriveLeg> {
+        match &self.prices {
+            Prices::Posts(prices) => Some(prices.leg(node, direction)),
+            Prices::Stored(_) => None,
         }
     }
 
@@ -178,7 +201,7 @@ impl<'a> DriveEdges<'a> {
     }
 
     /// The directions in which the rover drives to each node, a bit each.
-    pub(super) fn masks_into(&self) -> Vec<u32> {
+    pub(crate) fn masks_into(&self) -> Vec<u32> {
         self.gathered(&self.masks, 0..self.offsets.len(), -1)
     }
 

@@ -85,22 +85,27 @@ impl<'a> Extras<'a> {
     }
 
     /// Judges the leg of an offset from a post there and back, after its slopes. `heights` is a buffer.
-    pub(super) fn judge(&self, from: Post, (index, offset): (usize, (i32, i32)), verdicts: [u8; 2], heights: &mut Vec<f64>) -> [u8; 2] {
+    pub(super) fn judge(
+        &self,
+        from: Post,
+        (index, offset): (usize, (i32, i32)),
+        verdicts: [u8; 2],
+        heights: &mut Vec<f64>,
+    ) -> [u8; 2] {
         let no_ground = DriveLimit::Ground as u8;
         if verdicts == [NO_LEG; 2] || verdicts == [no_ground; 2] {
             return verdicts;
         }
-        let to = Post {
-            row: from.row.wrapping_add_signed(-offset.1 as isize),
-            col: from.col.wrapping_add_signed(offset.0 as isize),
-        };
+        let to =
+            Post { row: from.row.wrapping_add_signed(-offset.1 as isize), col: from.col.wrapping_add_signed(offset.0 as isize) };
         if self.keeps_out(from, to) {
             return [DriveLimit::KeepOut as u8; 2];
         }
         if verdicts.iter().all(|verdict| *verdict != KEPT) {
             return verdicts;
         }
-        let refused = self.wheels.get(index).and_then(|wheels| self.step(wheels, from, heights)).or_else(|| self.roughness(from, to));
+        let refused =
+            self.wheels.get(index).and_then(|wheels| self.step(wheels, from, heights)).or_else(|| self.roughness(from, to));
         verdicts.map(|verdict| if verdict == KEPT { refused.unwrap_or(KEPT) } else { verdict })
     }
 

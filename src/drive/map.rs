@@ -86,7 +86,8 @@ impl DriveMap {
             }
         };
         let width = bucket_width(edges);
-        let mut labels = if turns.is_empty() { Labels::of_nodes(masks, width) } else { Labels::of_headings(masks, states_per_node, width) };
+        let mut labels =
+            if turns.is_empty() { Labels::of_nodes(masks, width) } else { Labels::of_headings(masks, states_per_node, width) };
         ends.iter().for_each(|end| labels.start(*end, 0.0));
         if turns.is_empty() {
             labels.run(&NodeArcs::new(edges, sense.sign(), |_| 0.0), None, &meter)?;
@@ -210,7 +211,8 @@ fn turns(edges: &DriveEdges<'_>) -> Vec<f64> {
     let away = |(east, north): (i32, i32)| (f64::from(east) * map.dx_m(), f64::from(north) * map.dy_m());
     let pairs = edges.offsets().iter().flat_map(|a| edges.offsets().iter().map(move |b| (away(*a), away(*b))));
     // The angle between two directions.
-    let angle_deg = |((ax, ay), (bx, by)): ((f64, f64), (f64, f64))| libm::atan2((ax * by - ay * bx).abs(), ax * bx + ay * by).to_degrees();
+    let angle_deg =
+        |((ax, ay), (bx, by)): ((f64, f64), (f64, f64))| libm::atan2((ax * by - ay * bx).abs(), ax * bx + ay * by).to_degrees();
     pairs.map(|pair| per_deg * angle_deg(pair)).collect()
 }
 

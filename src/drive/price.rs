@@ -1,6 +1,9 @@
 //! What legs between posts cost, from the heights of the posts that they cross.
 
-use super::{leg::DriveGround, template::Template};
+use super::{
+    leg::{DriveGround, DriveLeg},
+    template::Template,
+};
 use crate::{
     terrain::{Dem, Samples},
     world::Rover,
@@ -95,7 +98,8 @@ impl<'a> PostPrices<'a> {
         for offset in offsets {
             let template = Template::new(dem.georeference(), *offset, 0.0);
             steps.extend(template.vertices[1..].iter().zip(&template.pieces).map(|(vertex, piece)| {
-                let mut terms = vertex.height.terms().map(|((east, south), weight)| (south as isize * width + east as isize, weight));
+                let mut terms =
+                    vertex.height.terms().map(|((east, south), weight)| (south as isize * width + east as isize, weight));
                 let (first, _) = terms.next().unwrap_or_default();
                 let (second, share) = terms.next().unwrap_or((first, 0.0));
                 Step { first, second, share, run_m: piece.run_m, per_run: 1.0 / piece.run_m }
@@ -116,15 +120,43 @@ impl<'a> PostPrices<'a> {
 
     #[inline]
     fn sum<T: Copy + Into<f64>>(&self, heights: &[T], post: usize, offset: usize) -> f64 {
+        let mut cost = 0.0;
+        self.pieces(heights, post, offset, |run_m, slope| {
+            cost += self.amount.of_piece(self.rover, self.gravity_m_s2, run_m, slope)
+        });
+        cost
+    }
+
+    /// All that the leg takes, without its extremes.
+    pub(super) fn leg(&self, post: usize, offset: usize) -> DriveLeg {
+        let mut leg = DriveLeg::default();
+        let add = |run_m: f64, slope: f64| {
+            let [time_s, energy_j_kg, length_m] =
+                DriveAmount::ALL.map(|amount| amount.of_piece(self.rover, self.gravity_m_s2, run_m, slope));
+            leg.run_m += run_m;
+            leg.length_m += length_m;
+            leg.climb_m += run_m * slope.max(0.0);
+            leg.descent_m += run_m * (-slope).max(0.0);
+            leg.time_s += time_s;
+            leg.energy_j_kg += energy_j_kg;
+        };
+        match self.dem.samples() {
+            Samples::Single(values) => self.pieces(values, post, offset, add),
+            Samples::Double(values) => self.pieces(values, post, offset, add),
+        }
+        leg
+    }
+
+    /// Visits the pieces of a leg: their horizontal length, m, and slope.
+    #[inline]
+    fn pieces<T: Copy + Into<f64>>(&self, heights: &[T], post: usize, offset: usize, mut visit: impl FnMut(f64, f64)) {
         let at = |step: isize| -> f64 { heights[post.wrapping_add_signed(step)].into() };
-        let (mut before_m, mut cost) = (at(0), 0.0);
+        let mut before_m = at(0);
         for step in &self.steps[self.begins[offset]..self.begins[offset + 1]] {
             let first_m = at(step.first);
             let height_m = first_m + step.share * (at(step.second) - first_m);
-            let slope = (height_m - before_m) * step.per_run;
-            cost += self.amount.of_piece(self.rover, self.gravity_m_s2, step.run_m, slope);
+            visit(step.run_m, (height_m - before_m) * step.per_run);
             before_m = height_m;
         }
-        cost
     }
 }

@@ -102,8 +102,12 @@ impl OffsetSlopes {
     /// their ends to the posts.
     pub(super) fn judge(&self, window: &Window, at: (usize, usize), ceilings: [f64; 3], there: &mut [u8], back: &mut [u8]) {
         let count = there.len();
-        let mut found =
-            Found { highest: [f64::NEG_INFINITY; CHUNK], lowest: [f64::INFINITY; CHUNK], across: [0.0; CHUNK], known: [0.0; CHUNK] };
+        let mut found = Found {
+            highest: [f64::NEG_INFINITY; CHUNK],
+            lowest: [f64::INFINITY; CHUNK],
+            across: [0.0; CHUNK],
+            known: [0.0; CHUNK],
+        };
         for piece in &self.pieces {
             match piece.other {
                 None => self.add(window, at, piece.facet, &mut found, count),

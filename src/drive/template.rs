@@ -191,7 +191,8 @@ mod tests {
                 let template = Template::new(&map, offset, beyond_m);
                 let aside = template.heading * beyond_m;
                 let (col, row) = (10 + offset.0, 10 - offset.1);
-                let ends = [map.post(10, 10) - aside, map.post(usize::try_from(row).unwrap(), usize::try_from(col).unwrap()) + aside];
+                let ends =
+                    [map.post(10, 10) - aside, map.post(usize::try_from(row).unwrap(), usize::try_from(col).unwrap()) + aside];
                 let profile = slice(&dem, ends[0], ends[1]).unwrap();
                 assert_eq!(profile.points.len(), template.vertices.len(), "{offset:?} {beyond_m}");
                 let post = |(col, row): Place| {

@@ -41,7 +41,8 @@ impl Axles {
         let mut rears: Vec<f64> = rears.map(|rear_m| rear_m.clamp(first_m, first_m + room_m.max(0.0))).collect();
         rears.sort_by(f64::total_cmp);
         rears.dedup();
-        let stands = rears.iter().map(|rear_m| Stand { rear: on(*rear_m), front: on(rear_m + base_m), at_m: rear_m + 0.5 * base_m });
+        let stands =
+            rears.iter().map(|rear_m| Stand { rear: on(*rear_m), front: on(rear_m + base_m), at_m: rear_m + 0.5 * base_m });
         Some(Self { stands: stands.collect() })
     }
 
@@ -88,8 +89,7 @@ mod tests {
                 (height_m(x_m + base_m) - height_m(x_m)).abs()
             };
             let sampled = (0..=samples).map(step).fold(0.0, f64::max);
-            let steepest =
-                points.windows(2).map(|p| ((p[1].1 - p[0].1) / (p[1].0 - p[0].0)).abs()).fold(0.0, f64::max);
+            let steepest = points.windows(2).map(|p| ((p[1].1 - p[0].1) / (p[1].0 - p[0].0)).abs()).fold(0.0, f64::max);
             let coarse = 2.0 * steepest * length_m / f64::from(samples);
             assert!(sampled <= found.value + 1e-9 && found.value <= sampled + coarse + 1e-9, "{sampled} {found:?}");
         }

@@ -3,7 +3,7 @@
 use super::{any_rover, flat, ground, ugly_ground};
 use crate::{
     draw::Draw,
-    drive::{DriveAmount, DriveEdges, DriveGround, DriveLimit, DriveRefusal, DriveRefusalCounts},
+    drive::{DriveAmount, DriveEdges, DriveGround, DriveLeg, DriveLimit, DriveRefusal, DriveRefusalCounts},
     ground::{DemGround, MapPosition, NodeLattice},
     quantity::{Angle, MapPoint},
     terrain::{Dem, GeoReference, Overlays},
@@ -49,7 +49,10 @@ fn a_leg_is_what_a_sampling_of_its_ground_says() {
                 (up, down, across) = (up.max(slope), down.max(-slope), across.max(gradient.perp(&heading).abs()));
             }
             let coarse = 1e-9 + 20.0 * away.norm() * (1.0 + up.max(down)) / f64::from(samples);
-            assert!((leg.length_m - length_m).abs() < coarse && (leg.climb_m - climb_m).abs() < coarse, "{leg:?} {length_m} {climb_m}");
+            assert!(
+                (leg.length_m - length_m).abs() < coarse && (leg.climb_m - climb_m).abs() < coarse,
+                "{leg:?} {length_m} {climb_m}"
+            );
             assert!((leg.climb_m - leg.descent_m - (to.z_m - from.z_m)).abs() < 1e-9 * (1.0 + leg.climb_m));
             assert!((leg.time_s - leg.length_m / 0.3).abs() < 1e-9 * leg.time_s);
             // A sampling may miss a short piece, but finds nothing steeper.
@@ -95,6 +98,11 @@ fn legs_between_posts_are_the_plain_ones() {
                         for (cost, plain) in costs.iter().zip([leg.time_s, leg.energy_j_kg, leg.length_m]) {
                             assert!((cost - plain).abs() <= 1e-11 * plain + 1e-13, "{cost} {plain}");
                         }
+                        // Walls of 50 m beside the way round what it climbs.
+                        let sums = all[0].sums(node, direction).unwrap();
+                        let of =
+                            |leg: &DriveLeg| [leg.run_m, leg.climb_m, leg.descent_m, leg.time_s, leg.energy_j_kg, leg.length_m];
+                        assert!(of(&sums).iter().zip(of(&leg)).all(|(sum, plain)| (sum - plain).abs() <= 1e-11 * (plain + 1.0)));
                         let least = DriveAmount::ALL.map(|amount| amount.least_per_m(&rover) * leg.run_m);
                         assert!(costs.iter().zip(least).all(|(cost, least)| *cost >= least));
                     }
@@ -144,7 +152,9 @@ fn refusals_are_named_in_their_order_with_value_limit_and_place() {
         sentence(RoverLimits { step_max_m: Some(0.1), ..wheels.clone() }),
         "the heights under the axles differ by 0.200 m 0.250 m along the leg, more than 0.1 m"
     );
-    assert!(leg(RoverLimits { step_max_m: Some(0.2), ..wheels.clone() }).unwrap().step.is_some_and(|step| step.value <= 0.2 + 1e-12));
+    assert!(
+        leg(RoverLimits { step_max_m: Some(0.2), ..wheels.clone() }).unwrap().step.is_some_and(|step| step.value <= 0.2 + 1e-12)
+    );
     let refusal = leg(RoverLimits { roughness_max_m: Some(0.001), ..wheels.clone() }).unwrap_err();
     assert!(matches!(refusal, DriveRefusal::Roughness { residual_m, .. } if residual_m > 0.01), "{refusal}");
     // A wheelbase that the map has no room for beyond the ends.
