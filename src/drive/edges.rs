@@ -323,7 +323,9 @@ impl<'a> DriveEdges<'a> {
             Ok(counts)
         });
         let counts: Vec<DriveRefusalCounts> = counts.collect::<Result<_, Cancelled>>()?;
-        counts.into_iter().for_each(|counts| self.refusals += counts);
+        for counts in counts {
+            self.refusals += counts;
+        }
         (self.masks, self.prices) = (masks, Prices::Stored(costs));
         Ok(())
     }

@@ -88,7 +88,9 @@ impl DriveMap {
         let width = bucket_width(edges);
         let mut labels =
             if turns.is_empty() { Labels::of_nodes(masks, width) } else { Labels::of_headings(masks, states_per_node, width) };
-        ends.iter().for_each(|end| labels.start(*end, 0.0));
+        for end in ends {
+            labels.start(*end, 0.0);
+        }
         if turns.is_empty() {
             labels.run(&NodeArcs::new(edges, sense.sign(), |_| 0.0), None, &meter)?;
         } else {

@@ -122,7 +122,7 @@ impl<'a> PostPrices<'a> {
     fn sum<T: Copy + Into<f64>>(&self, heights: &[T], post: usize, offset: usize) -> f64 {
         let mut cost = 0.0;
         self.pieces(heights, post, offset, |run_m, slope| {
-            cost += self.amount.of_piece(self.rover, self.gravity_m_s2, run_m, slope)
+            cost += self.amount.of_piece(self.rover, self.gravity_m_s2, run_m, slope);
         });
         cost
     }

@@ -12,7 +12,7 @@ pub(super) const MARGIN: usize = 4;
 /// How a leg is judged.
 pub(super) const NO_LEG: u8 = u8::MAX;
 /// A leg that keeps every limit looked at so far.
-pub(super) const KEPT: u8 = DriveLimit::ALL.len() as u8;
+pub(super) const KEPT: u8 = DriveLimit::Roughness as u8 + 1;
 
 /// Some rows of a DEM with a margin on all sides: NaN where there is no elevation.
 #[derive(Debug)]

@@ -58,10 +58,10 @@ fn symmetric_limits_make_there_and_back_alike() {
         };
         let rover = rover(limits);
         let each: Vec<_> = (0..64).map(|end| costs(&ground, &rover, DriveAmount::Time, DriveSense::From, end)).collect();
-        for a in 0..64 {
+        for (a, from_a) in each.iter().enumerate() {
             let into = costs(&ground, &rover, DriveAmount::Time, DriveSense::To, a);
             for b in 0..64 {
-                let (there, back) = (each[a][b], each[b][a]);
+                let (there, back) = (from_a[b], each[b][a]);
                 assert!(there == back || (there - back).abs() < 1e-9 * there, "{there} {back}");
                 assert!(into[b] == back || (into[b] - back).abs() < 1e-9 * back);
                 reached += u32::from(there.is_finite());

@@ -38,19 +38,19 @@ pub(super) fn driven(
     };
     let edges = match DriveEdges::new(&drive, lattice, DriveAmount::Time, progress) {
         Ok(edges) => edges,
-        Err(error) => return unless_cancelled(error),
+        Err(error) => return unless_cancelled(&error),
     };
     let map = match DriveMap::new(&edges, &ends, sense, progress) {
         Ok(map) => map,
-        Err(error) => return unless_cancelled(error),
+        Err(error) => return unless_cancelled(&error),
     };
     Ok(totals(&edges, (&map, &ends), (&DriveLegs::new(ground, question.rover, nodes), amounts)))
 }
 
 /// A map too large for a drive map is left to the search.
-fn unless_cancelled<T>(error: DriveError) -> Result<Option<T>, RouteError> {
+fn unless_cancelled<T>(error: &DriveError) -> Result<Option<T>, RouteError> {
     match error {
-        DriveError::Cancelled(cancelled) => Err(RouteError::Cancelled(cancelled)),
+        DriveError::Cancelled(cancelled) => Err(RouteError::Cancelled(*cancelled)),
         _ => Ok(None),
     }
 }
@@ -74,7 +74,9 @@ fn totals(
         DriveSense::To => &|node| edges.directions(node),
     };
     let mut totals = vec![f64::NAN; costs.len() * width];
-    ends.iter().for_each(|end| totals[end * width..][..width].fill(0.0));
+    for end in ends {
+        totals[end * width..][..width].fill(0.0);
+    }
     let (mut best, mut found) = (vec![0.0; width], vec![0.0; width]);
     for node in order {
         if costs[node] == 0.0 {
