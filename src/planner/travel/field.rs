@@ -77,7 +77,7 @@ fn amounts_of(objective: &Objective) -> Objective {
 ///
 /// # Complexity
 /// As [`travel`](super::travel) without a goal. Where a machine only drives between posts, without a price of turns and without budgets, and
-/// mission time comes first: that of a [`DriveMap`](crate::drive::DriveMap), some ten times as fast.
+/// mission time comes first: that of a [`DriveMap`](crate::drive::DriveMap).
 pub fn travel_field(
     (ground, nodes): (&DemGround, &SurfaceNodes),
     starts: &[SurfaceNode],
