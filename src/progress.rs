@@ -73,6 +73,10 @@ pub enum Stage {
     Trials,
     /// A grid of scenarios; counted in cells.
     Trade,
+    /// The drive legs from every node; counted in rows of nodes.
+    DriveLegs,
+    /// The least cost of driving to every node; counted in nodes.
+    DriveMap,
 }
 
 /// The unit of the stages that are counted in tested pairs.
@@ -80,7 +84,7 @@ const PAIRS: &str = "pairs";
 
 impl Stage {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Search,
         Self::Reachability,
         Self::CostToGo,
@@ -93,6 +97,8 @@ impl Stage {
         Self::Fan,
         Self::Trials,
         Self::Trade,
+        Self::DriveLegs,
+        Self::DriveMap,
     ];
 
     /// The name in messages.
@@ -110,6 +116,8 @@ impl Stage {
             Self::Fan => "fan",
             Self::Trials => "simulation",
             Self::Trade => "trade grid",
+            Self::DriveLegs => "judging of drive legs",
+            Self::DriveMap => "drive map",
         }
     }
 
@@ -123,6 +131,8 @@ impl Stage {
             Self::Fan => "headings",
             Self::Trials => "trials",
             Self::Trade => "cells",
+            Self::DriveLegs => "rows",
+            Self::DriveMap => "nodes",
         }
     }
 

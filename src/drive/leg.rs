@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{DriveRefusal, wheels::greatest_step};
+use super::{DriveRefusal, wheels::Axles};
 use crate::{
     ground::{DemGround, MapPosition, Surface},
     quantity::MapPoint,
@@ -174,13 +174,31 @@ impl<'a> DriveGround<'a> {
     fn keep_out(&self, profile: &mut Profile) -> Result<(), DriveRefusal> {
         let Some(zones) = self.ground.terrain().overlays().keep_out() else { return Ok(()) };
         // A mask that does not cover the leg says nothing of it: what is not known is not allowed.
-        if zones.mark(profile).is_err() {
-            return Err(DriveRefusal::KeepOut { at_m: 0.0 });
-        }
+        zones.mark(profile).map_err(|_| DriveRefusal::KeepOut { at_m: 0.0 })?;
         match profile.facets.iter().position(|facet| facet.keep_out) {
             Some(piece) => Err(DriveRefusal::KeepOut { at_m: profile.points[piece].x_m }),
             None => Ok(()),
         }
+    }
+
+    /// Whether the leg has ground and enters a keep-out zone.
+    pub(super) fn is_kept_out(&self, from: &MapPosition, to: &MapPosition) -> bool {
+        self.slice(from.at, to.at, 0.0).is_ok_and(|mut profile| self.keep_out(&mut profile).is_err())
+    }
+
+    /// The greatest tangents up, down and across with their tolerance.
+    pub(super) const fn ceilings(&self) -> [f64; 3] {
+        self.ceilings
+    }
+
+    /// The greatest step and residual with their tolerance, m; infinite where nothing limits them.
+    pub(super) const fn heights_m(&self) -> [f64; 2] {
+        self.heights_m
+    }
+
+    /// Gravity, m/s^2.
+    pub(super) const fn gravity_m_s2(&self) -> f64 {
+        self.gravity_m_s2
     }
 
     /// What the pieces of a slice take together.
@@ -230,8 +248,8 @@ impl<'a> DriveGround<'a> {
         let (Some(max_m), Some(base_m)) = (limits.step_max_m, limits.wheelbase_m) else { return Ok(None) };
         let half_m = 0.5 * base_m;
         let profile = self.slice(from - heading * half_m, to + heading * half_m, half_m)?;
-        let found = greatest_step(&profile.points, base_m).unwrap_or_default();
-        let step = Extreme { at_m: found.at_m - half_m, ..found };
+        let (x_m, z_m): (Vec<f64>, Vec<f64>) = profile.points.iter().map(|point| (point.x_m - half_m, point.z_m)).unzip();
+        let step = Axles::new(&x_m, base_m).map(|axles| axles.greatest(&z_m)).unwrap_or_default();
         if step.value > self.heights_m[0] {
             return Err(DriveRefusal::Step { step_m: step.value, max_m, at_m: step.at_m });
         }

@@ -163,6 +163,8 @@ impl fmt::Display for DriveRefusal {
     }
 }
 
+impl std::error::Error for DriveRefusal {}
+
 /// How many legs each limit refused; a leg counts once, under the first limit that it exceeds in the order of [`DriveLimit`].
 ///
 /// ```

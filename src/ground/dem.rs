@@ -212,7 +212,7 @@ impl DemGround {
         self.footprint.is_some() && self.footprint_refusal(position, friction()).is_some()
     }
 
-    pub(super) fn triangles(&self) -> Triangles<'_> {
+    pub(crate) fn triangles(&self) -> Triangles<'_> {
         Triangles::of(self.terrain.dem())
     }
 

@@ -36,8 +36,8 @@ pub use mesh::{
     BALL_STAND_OFF, BlockedSpan, MeshBuffers, MeshConflict, MeshContact, MeshContactFacet, MeshCourse, MeshGround, MeshPosition,
     MeshTakeoffSet, MeshWindow, MeshWindowEnd, NoMeshContact, UnknownGroup,
 };
-pub(crate) use posts::Offset;
 pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostHopsSize, PostRefusal};
+pub(crate) use posts::{Offset, OverlayTable};
 #[cfg(test)]
 pub(crate) use posts::{OffsetTable, Spacing};
 pub use surface::{

@@ -124,7 +124,11 @@ impl SlipCurve {
     }
 
     /// The share lost on a slope, given as its tangent along the way; straight in the tangent between the points. 0 without a point.
+    #[inline]
     pub fn share(&self, slope: f64) -> f64 {
+        if self.points.is_empty() {
+            return 0.0;
+        }
         let slope = if self.by_steepness { slope.abs() } else { slope };
         let after = self.points.partition_point(|(at, _)| *at < slope);
         match (after.checked_sub(1).map(|before| self.points[before]), self.points.get(after)) {
@@ -317,6 +321,7 @@ impl Rover {
     /// assert!([1.0, -1.0].iter().all(|slope| (rover.speed_m_s(*slope) - 0.1).abs() < 1e-12));
     /// # Ok::<(), chta::world::InvalidRover>(())
     /// ```
+    #[inline]
     pub fn speed_m_s(&self, slope: f64) -> f64 {
         self.limits.speed_m_s * (1.0 - self.limits.slip.share(slope))
     }
@@ -340,6 +345,7 @@ impl Rover {
     /// assert!((rover.energy_j_kg_m(-1.0, 10.0) - 2.0).abs() < 1e-12);
     /// # Ok::<(), chta::world::InvalidRover>(())
     /// ```
+    #[inline]
     pub fn energy_j_kg_m(&self, slope: f64, gravity_m_s2: f64) -> f64 {
         let limits = &self.limits;
         let cosine = 1.0 / (1.0 + slope * slope).sqrt();

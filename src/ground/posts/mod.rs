@@ -20,6 +20,7 @@ pub use lattice::{NodeLattice, Post};
 pub(crate) use offsets::Offset;
 #[cfg(test)]
 pub(crate) use offsets::{OffsetTable, Spacing};
+pub(crate) use overlays::OverlayTable;
 pub use post_hops::{Lofts, PostHops};
 pub use reach::PostHopsSize;
 pub use refusal::PostRefusal;

@@ -17,7 +17,7 @@ const TOUCHING: f64 = 1.0e-6;
 
 /// Zones and friction at every post.
 #[derive(Clone, Debug)]
-pub(super) struct OverlayTable {
+pub(crate) struct OverlayTable {
     cols: usize,
     kept: Vec<bool>,
     /// Friction coefficients, NaN where the raster has none; empty without a raster.
@@ -38,7 +38,7 @@ impl OverlayTable {
     ///
     /// # Errors
     /// [`TerrainError::Overlay`] if a mask does not cover the terrain, or friction is missing in the raster and as a constant.
-    pub(super) fn new(terrain: &OverlaidDem, constant: Option<FrictionCone>) -> Result<Option<Self>, TerrainError> {
+    pub(crate) fn new(terrain: &OverlaidDem, constant: Option<FrictionCone>) -> Result<Option<Self>, TerrainError> {
         let (dem, overlays) = (terrain.dem(), terrain.overlays());
         let (friction, keep_out) = (overlays.friction(), overlays.keep_out());
         if friction.is_none() && keep_out.is_none() {
@@ -77,7 +77,7 @@ impl OverlayTable {
 
     /// Whether a post, with everything around it up to the next border, lies in a keep-out zone.
     #[inline]
-    pub(super) fn kept(&self, post: usize) -> bool {
+    pub(crate) fn kept(&self, post: usize) -> bool {
         self.kept[post]
     }
 
@@ -95,7 +95,7 @@ impl OverlayTable {
 
     /// Whether a border touches the bounding box of two posts.
     #[inline]
-    pub(super) fn has_border(&self, a: Post, b: Post) -> bool {
+    pub(crate) fn has_border(&self, a: Post, b: Post) -> bool {
         // Squares that touch the box: from the one before its first post to the one at its last.
         let (north, south) = (a.row.min(b.row), a.row.max(b.row));
         let (west, east) = (a.col.min(b.col), a.col.max(b.col));

@@ -10,6 +10,7 @@ use super::{
     },
     MissionQuestion,
     drive_legs::DriveLegs,
+    driven::driven,
     legs::TravelLegs,
 };
 use crate::{
@@ -75,7 +76,8 @@ fn amounts_of(objective: &Objective) -> Objective {
 /// [`RouteError`].
 ///
 /// # Complexity
-/// As [`travel`](super::travel) without a goal.
+/// As [`travel`](super::travel) without a goal. Where a machine only drives between posts, without a price of turns and without budgets, and
+/// mission time comes first: that of a [`DriveMap`](crate::drive::DriveMap).
 pub fn travel_field(
     (ground, nodes): (&DemGround, &SurfaceNodes),
     starts: &[SurfaceNode],
@@ -90,6 +92,9 @@ pub fn travel_field(
     let amounts = objective.amounts().to_vec();
     let mut field = TravelField { totals: vec![f64::NAN; nodes.count() * amounts.len()], amounts, capped: false };
     let Some(first) = starts.first() else { return Ok(field) };
+    if let Some(totals) = driven((ground, nodes), &starts, question, (&field.amounts, toward), progress)? {
+        return Ok(TravelField { totals, ..field });
+    }
     let (side, settling) = match toward {
         Toward::Nodes => (Side::Start, Settling::AfterAll),
         // Of several starts, where a mission may end, none is spared.

@@ -9,6 +9,7 @@
 //! Where driving joins hops, no bound on hops, speeds, energies or times of flights holds, and the search uses none.
 
 mod drive_legs;
+mod driven;
 mod field;
 mod kind;
 mod legs;
