@@ -114,7 +114,7 @@ pub struct TravelFrontRecord {
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum TravelLegRecord {
     /// Driven without a stop, in straight lines.
-    Drive(DriveLegRecord),
+    Drive(Box<DriveLegRecord>),
     /// One hop.
     Hop(Box<HopLegRecord>),
 }

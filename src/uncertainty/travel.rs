@@ -28,7 +28,7 @@ const TRIES_MOST: u32 = 20;
 const MOVES_MOST: (usize, usize) = (4, 40);
 
 /// One move of a mission as planned.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum TravelMove {
     /// A straight drive.
     Drive {
@@ -40,7 +40,7 @@ pub enum TravelMove {
     /// A hop.
     Hop {
         /// Its command.
-        hop: Hop,
+        hop: Box<Hop>,
         /// Where it takes off.
         from: MapPosition,
         /// Where it lands.

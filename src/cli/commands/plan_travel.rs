@@ -2,7 +2,7 @@
 
 use chta::{
     report::{DocumentKind, travel_text, write_travel_csv},
-    study::{TravelOptions, travel_plan},
+    study::{Front, TravelOptions, travel_plan},
 };
 
 use crate::cli::{
@@ -24,7 +24,7 @@ pub(super) fn run(args: &PlanArgs, loaded: &Loaded) -> Result<Answer, Failure> {
         ("--prove", args.prove.prove, "bounds the hops along a profile"),
         ("--dry-run", args.size.dry_run, "states the size of a search for hops"),
     ])?;
-    let options = TravelOptions { alternatives: args.alternatives, front: args.front()?.map(|front| front.amount()) };
+    let options = TravelOptions { alternatives: args.alternatives, front: args.front()?.map(Front::amount) };
     let plot = args.view.begin_picture(args.plot.as_deref())?;
     let mut table = Table::begin(args.output.as_deref(), TableFormat::Csv)?;
     let planned = travel_plan(&loaded.case, options, &Progress::new(args.common.quiet))?;

@@ -3,7 +3,7 @@
 use super::{
     super::{Amount, Budgets, RouteError, SurfaceNode, SurfaceNodes, labels::by_objective},
     MissionQuestion, Toward,
-    drive_legs::DriveLegs,
+    drive_legs::{DriveLegs, drive_amounts},
 };
 use crate::{
     drive::{DriveAmount, DriveEdges, DriveError, DriveGround, DriveMap, DriveSense},
@@ -91,7 +91,7 @@ fn totals(
             };
             let sets_it = costs[before] < costs[node] && costs[before] + edges.cost(begin, direction) == costs[node];
             let Some(leg) = edges.sums(begin, direction).filter(|_| sets_it) else { continue };
-            let taken = legs.amounts(&leg, 0.0);
+            let taken = drive_amounts(legs.rover(), &leg, 0.0);
             for ((found, amount), sum) in found.iter_mut().zip(amounts).zip(&totals[before * width..]) {
                 *found = sum + taken.of(*amount);
             }

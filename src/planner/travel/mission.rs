@@ -205,7 +205,7 @@ impl<'a> Asked<'a> {
             let mut run = Run::new(legs, legs.ends(), Tracked::new(objective, budgets), cap);
             let best = run.until(true)?.map(|label| run.path(label)).transpose()?;
             let (mut capped, mut within) = (run.labels.capped, best.is_some());
-            let reached = asked.reached(legs, &run);
+            let reached = Self::reached(legs, &run);
             let mut work = MissionWork { reached: reached.len(), settled: run.settled, ..MissionWork::default() };
             let (mut found, mut unmet) = (best, Vec::new());
             if found.is_none()
@@ -217,7 +217,7 @@ impl<'a> Asked<'a> {
                 work.settled += without.work.1;
                 found = Some(without.path);
             }
-            let stopped = found.is_none().then(|| (asked.nearest(&reached), asked.refusals(legs, &reached)));
+            let stopped = found.is_none().then(|| (asked.nearest(&reached), Self::refusals(legs, &reached)));
             let hops = found.iter().flat_map(|path| hops_of(legs, path)).collect();
             let path = found.as_ref().map(|path| asked.path(legs, path));
             [work.hops_tested, work.drives_tested] = legs.tested();
@@ -226,7 +226,7 @@ impl<'a> Asked<'a> {
     }
 
     /// The nodes that have labels, ascending.
-    fn reached(&self, legs: &TravelLegs<'_>, run: &Run<'_, TravelLegs<'_>>) -> Vec<SurfaceNode> {
+    fn reached(legs: &TravelLegs<'_>, run: &Run<'_, TravelLegs<'_>>) -> Vec<SurfaceNode> {
         let labelled = (0..legs.nodes()).filter(|state| run.labels.of_node(*state).next().is_some());
         let mut nodes: Vec<SurfaceNode> = labelled.map(|state| legs.node_of(state)).collect();
         nodes.sort_unstable();
@@ -242,7 +242,7 @@ impl<'a> Asked<'a> {
     }
 
     /// Why drive legs from reached nodes to others are refused.
-    fn refusals(&self, legs: &TravelLegs<'_>, reached: &[SurfaceNode]) -> DriveRefusalCounts {
+    fn refusals(legs: &TravelLegs<'_>, reached: &[SurfaceNode]) -> DriveRefusalCounts {
         let mut counts = DriveRefusalCounts::default();
         let Some(drive) = legs.drive else { return counts };
         for node in reached {

@@ -69,13 +69,13 @@ impl World {
         MissionQuestion { route, rover: &self.rover, travel: means }
     }
 
-    fn goal(&self, [start, goal]: [MapPoint; 2]) -> RouteGoal {
+    fn goal([start, goal]: [MapPoint; 2]) -> RouteGoal {
         RouteGoal { start, goal, effort: Effort::default(), takeoff: TakeoffChoice::LeastTime }
     }
 
     fn best(&self, amounts: &[Amount], means: Travel, ends: [MapPoint; 2]) -> Mission {
         let objective = objective(amounts);
-        travel(&self.ground, &self.nodes, &self.goal(ends), &self.question(&objective, &Budgets::NONE, means), &()).unwrap()
+        travel(&self.ground, &self.nodes, &Self::goal(ends), &self.question(&objective, &Budgets::NONE, means), &()).unwrap()
     }
 
     fn total(&self, amounts: &[Amount], means: Travel) -> Option<f64> {
@@ -194,7 +194,7 @@ fn hops_alone_are_those_of_free_routes() {
             let objective = objective(amounts);
             let question = world.question(&objective, &Budgets::NONE, Travel::Hop);
             let mission = world.best(amounts, Travel::Hop, world.ends);
-            let route = free_route_by(&world.ground, &world.nodes, &world.goal(world.ends), &question.route, &()).unwrap();
+            let route = free_route_by(&world.ground, &world.nodes, &World::goal(world.ends), &question.route, &()).unwrap();
             assert_eq!(mission.path.is_some(), route.path.is_some(), "case {case}");
             let (Some(mission), Some(route)) = (mission.path, route.path) else { continue };
             for amount in amounts {
@@ -338,7 +338,7 @@ fn budgets_are_kept_or_reported() {
             let mission = travel(
                 &world.ground,
                 &world.nodes,
-                &world.goal(world.ends),
+                &World::goal(world.ends),
                 &world.question(&objective, &budgets, Travel::Both),
                 &(),
             )

@@ -255,7 +255,7 @@ fn legs(search: &TravelSearch, walked: &[Stretch], flown: &HopPath) -> Vec<Trave
     for stretch in walked {
         match stretch {
             Stretch::Drive(driven) => {
-                legs.push(TravelLegRecord::Drive(drive_leg(search, driven, legs.len() + 1)));
+                legs.push(TravelLegRecord::Drive(Box::new(drive_leg(search, driven, legs.len() + 1))));
                 travelled_m += driven.legs.iter().map(|leg| leg.run_m).sum::<f64>();
             }
             Stretch::Hops(path) => {

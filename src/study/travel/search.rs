@@ -61,7 +61,7 @@ impl TravelSearch {
     }
 
     /// What the best missions take from all nodes to the goal, without budgets: by it a robot replans.
-    pub(super) fn to_go(self, progress: &dyn Progress) -> Result<TravelToGo, JourneyError> {
+    pub(super) fn into_to_go(self, progress: &dyn Progress) -> Result<TravelToGo, JourneyError> {
         let mut question = self.question(self.keys.travel, &self.free.objective);
         question.route.budgets = &Budgets::NONE;
         let goal = self.free.nodes.place(self.free.goal.goal);

@@ -41,7 +41,7 @@ pub fn travel_simulate(
     let mut records = Vec::new();
     if let Some((mut mission, legs)) = mission(&planned)? {
         if policies.contains(&Policy::Replan) {
-            mission.to_go = Some(TravelSearch::of(&planned.case)?.to_go(progress)?);
+            mission.to_go = Some(TravelSearch::of(&planned.case)?.into_to_go(progress)?);
         }
         warnings.extend(left_out(&scenario));
         let SimulateOptions { until_half_width, first_trial, .. } = *options;
@@ -82,7 +82,7 @@ fn mission(planned: &TravelPlanned) -> Result<Option<(TravelMission, Vec<usize>)
             Stretch::Hops(hops) => {
                 for (hop, pair) in hops.hops.iter().zip(places.by_ref()) {
                     leg += 1;
-                    moves.push(TravelMove::Hop { hop: *hop, from: pair[0], to: pair[1] });
+                    moves.push(TravelMove::Hop { hop: Box::new(*hop), from: pair[0], to: pair[1] });
                     legs.push(leg);
                 }
             }
