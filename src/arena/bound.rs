@@ -1,0 +1,38 @@
+//! What no path of an arena can beat.
+
+use super::{Arena, Reading, Tariff, any_angle::least_time_s};
+
+/// A time that no path beats, under the prices of a planner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LowerBound {
+    /// The time, s; infinite if there is no path at all.
+    pub time_s: f64,
+    /// Whether the exact planner reaches it under the same prices; else it is below what can be reached.
+    pub is_exact: bool,
+}
+
+/// The least time of any path under the prices of a reading, over the boxes as drawn: for R0 the exact optimum, for R1 and for a jumper that weakens a
+/// time below it.
+///
+/// The jump of R1 includes its length, which is at most `d`, the diagonal of its nodes. A path of length `L` with `n` jumps takes at least
+///
+/// ```text
+///     (L - n d) / v + n t  =  L / v + n (t - d / v)
+/// ```
+///
+/// which is the exact optimum for jumps that take `t - d / v`; where that is negative, jumping is faster than driving, and everything is taken at
+/// the speed of a jump.
+pub fn lower_bound(arena: &Arena, reading: Reading) -> LowerBound {
+    let jumper = arena.jumper();
+    let mut tariff = Tariff { speed_factor_per_jump: 1.0, ..Tariff::of(jumper, Reading::R0) };
+    let is_exact = reading == Reading::R0 && jumper.speed_factor_per_jump == 1.0;
+    if reading == Reading::R1 {
+        let longest_m = arena.keys().grid.jump_length_m * std::f64::consts::SQRT_2;
+        let left_s = jumper.jump_time_s - longest_m / jumper.speed_m_s;
+        if left_s < 0.0 {
+            tariff.speed_m_s = if jumper.jump_time_s > 0.0 { longest_m / jumper.jump_time_s } else { f64::INFINITY };
+        }
+        tariff.jump_time_s = left_s.max(0.0);
+    }
+    LowerBound { time_s: least_time_s(arena, tariff), is_exact }
+}
