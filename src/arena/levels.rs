@@ -48,6 +48,17 @@ pub(super) struct Crossed {
     pub(super) end_m: f64,
 }
 
+/// A piece of a face: a line between two heights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Face {
+    /// Its end with the least coordinates.
+    pub(super) min: MapPoint,
+    /// Its other end.
+    pub(super) max: MapPoint,
+    /// The heights on its two sides, that towards less x or y first, m.
+    pub(super) sides_m: [f64; 2],
+}
+
 /// Which cells a coordinate is in: one, or the two beside a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Band {
@@ -87,6 +98,34 @@ impl Levels {
     /// The lines across x and across y.
     pub(super) fn lines(&self) -> (&[f64], &[f64]) {
         (&self.xs, &self.ys)
+    }
+
+    /// The faces inside the floor, each piece between the same two heights joined.
+    pub(super) fn faces(&self) -> Vec<Face> {
+        let mut faces: Vec<Face> = Vec::new();
+        let mut add = |min: MapPoint, max: MapPoint, sides_m: [f64; 2]| {
+            if sides_m[0] == sides_m[1] {
+                return;
+            }
+            match faces.last_mut() {
+                Some(last) if last.max == min && last.sides_m == sides_m => last.max = max,
+                _ => faces.push(Face { min, max, sides_m }),
+            }
+        };
+        let cell = |column: usize, row: usize| self.cell(column.cast_signed(), row.cast_signed());
+        for i in 1..self.xs.len() - 1 {
+            for (j, ends) in self.ys.windows(2).enumerate() {
+                let at = |y: f64| MapPoint::new(self.xs[i], y);
+                add(at(ends[0]), at(ends[1]), [cell(i - 1, j), cell(i, j)]);
+            }
+        }
+        for j in 1..self.ys.len() - 1 {
+            for (i, ends) in self.xs.windows(2).enumerate() {
+                let at = |x: f64| MapPoint::new(x, self.ys[j]);
+                add(at(ends[0]), at(ends[1]), [cell(i, j - 1), cell(i, j)]);
+            }
+        }
+        faces
     }
 
     /// The height of a cell, m.

@@ -30,6 +30,7 @@ mod levels;
 mod path;
 mod problem;
 mod random;
+mod rrt_star;
 mod tariff;
 
 pub use any_angle::any_angle_path;
@@ -42,4 +43,5 @@ pub use keys::{ArenaKeys, BoxKeys, FloorKeys, GridKeys, JumperKeys};
 pub use path::{ArenaPath, Move, PathPoint};
 pub use problem::{ArenaProblem, Refusal};
 pub use random::{RandomBoxes, random_arena};
+pub use rrt_star::{GrownTree, HISTORY_NODES, Joined, RrtStarOptions, TreeNode, grow_rrt_star};
 pub use tariff::{Reading, Tariff};
