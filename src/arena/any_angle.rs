@@ -44,8 +44,8 @@ pub fn any_angle_path(arena: &Arena, may_jump: bool) -> Result<Option<ArenaPath>
 }
 
 /// The least time of any path under these prices, which need not be the jumper's; infinite if there is no path.
-pub(super) fn least_time_s(arena: &Arena, tariff: Tariff) -> f64 {
-    AnyAngle::new(arena, tariff, true).search().map_or(f64::INFINITY, |found| found.time_s)
+pub(super) fn least_time_s(arena: &Arena, tariff: Tariff, may_jump: bool) -> f64 {
+    AnyAngle::new(arena, tariff, may_jump).search().map_or(f64::INFINITY, |found| found.time_s)
 }
 
 /// Whether a place is seen from another.

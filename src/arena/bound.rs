@@ -22,7 +22,7 @@ pub struct LowerBound {
 ///
 /// which is the exact optimum for jumps that take `t - d / v`; where that is negative, jumping is faster than driving, and everything is taken at
 /// the speed of a jump.
-pub fn lower_bound(arena: &Arena, reading: Reading) -> LowerBound {
+pub fn lower_bound(arena: &Arena, reading: Reading, may_jump: bool) -> LowerBound {
     let jumper = arena.jumper();
     let mut tariff = Tariff { speed_factor_per_jump: 1.0, ..Tariff::of(jumper, Reading::R0) };
     let is_exact = reading == Reading::R0 && jumper.speed_factor_per_jump == 1.0;
@@ -34,5 +34,8 @@ pub fn lower_bound(arena: &Arena, reading: Reading) -> LowerBound {
         }
         tariff.jump_time_s = left_s.max(0.0);
     }
-    LowerBound { time_s: least_time_s(arena, tariff), is_exact }
+    // Of a bound that is not exact the energy is not that of the path either: the battery is left out.
+    let unbounded = arena.without_battery();
+    let arena = if is_exact { arena } else { unbounded.as_ref().unwrap_or(arena) };
+    LowerBound { time_s: least_time_s(arena, tariff, may_jump), is_exact }
 }

@@ -112,7 +112,8 @@ pub fn check_path(arena: &Arena, path: &ArenaPath) -> Result<CheckedPath, PathFa
     #[expect(clippy::cast_precision_loss, reason = "few jumps")]
     let jumps = sum.jumps as f64;
     sum.energy_j = jumper.drive_j_per_m * driven_m + jumper.jump_j * jumps + jumper.power_w * sum.time_s;
-    if !((sum.time_s - path.time_s).abs() <= 1e-9 * path.time_s.max(1.0)) {
+    let differs = (sum.time_s - path.time_s).abs() > 1e-9 * path.time_s.max(1.0);
+    if differs || path.time_s.is_nan() {
         return Err(PathFault::Time { found_s: sum.time_s, stated_s: path.time_s });
     }
     if sum.energy_j > jumper.battery_j * (1.0 + 1e-9) {

@@ -150,11 +150,28 @@ impl Arena {
         &self.levels
     }
 
-    /// The same with another robot or inflation.
-    pub(super) fn with(&self, change: impl FnOnce(&mut ArenaKeys)) -> Result<Self, Vec<ArenaProblem>> {
-        let mut keys = self.keys.clone();
-        change(&mut keys);
-        Self::new(keys)
+    /// The same without its battery; `None` if it has none.
+    pub(super) fn without_battery(&self) -> Option<Self> {
+        let mut jumper = self.jumper;
+        jumper.battery_j = f64::INFINITY;
+        self.keys.jumper.battery_j.map(|_| Self { jumper, ..self.clone() })
+    }
+
+    /// The same without one of its limits each, beside the key of that limit: the battery, the rise of jumps where they are allowed, the
+    /// inflation.
+    pub(crate) fn lifted(&self, may_jump: bool) -> Vec<(&'static str, Self)> {
+        let mut found = Vec::new();
+        let mut lift = |key, is_limit: bool, change: &dyn Fn(&mut ArenaKeys)| {
+            let mut keys = self.keys.clone();
+            change(&mut keys);
+            found.extend(is_limit.then(|| Self::new(keys).ok()).flatten().map(|arena| (key, arena)));
+        };
+        let highest_m = self.boxes.iter().map(|one| one.height_m).fold(0.0, f64::max);
+        lift("jumper.battery_j", self.jumper.battery_j.is_finite(), &|keys| keys.jumper.battery_j = None);
+        lift("jumper.rise_max_m", may_jump && highest_m > self.jumper.rise_max_m, &|keys| keys.jumper.rise_max_m = highest_m);
+        lift("arena.inflation_m", self.keys.arena.inflation_m > 0.0, &|keys| keys.arena.inflation_m = 0.0);
+        lift("jumper.ring_m", self.jumper.ring_m > 0.0, &|keys| keys.jumper.ring_m = 0.0);
+        found
     }
 
     /// What an analyst should know of a valid arena: boxes of different heights that overlap.
@@ -211,8 +228,7 @@ impl Problems {
         if floor.start_m.iter().zip(floor.goal_m).all(|(start, goal)| (start - goal).abs() <= SAME_M) {
             problems.add("arena", "goal_m", &floor.goal_m, "a place other than arena.start_m", "say where the way leads");
         }
-        if floor.start_heading_deg.is_some_and(|heading_deg| !(heading_deg.abs() <= 360.0)) {
-            let found = floor.start_heading_deg.unwrap_or(f64::NAN);
+        if let Some(found) = floor.start_heading_deg.filter(|heading_deg| !(-360.0..=360.0).contains(heading_deg)) {
             problems.number(
                 "arena",
                 "start_heading_deg",

@@ -41,7 +41,7 @@ impl Ord for Waiting {
 /// The labels, and those that wait.
 #[derive(Debug)]
 pub(super) struct Labels {
-    labels: Vec<Label>,
+    all: Vec<Label>,
     waiting: BinaryHeap<Waiting>,
     /// The least time by state, where time alone decides.
     best_s: Vec<f64>,
@@ -55,7 +55,7 @@ impl Labels {
     pub(super) fn new(states: usize, is_plain: bool) -> Self {
         let (best_s, settled) =
             if is_plain { (vec![f64::INFINITY; states], Vec::new()) } else { (Vec::new(), vec![Vec::new(); states]) };
-        Self { labels: Vec::new(), waiting: BinaryHeap::new(), best_s, settled, is_plain }
+        Self { all: Vec::new(), waiting: BinaryHeap::new(), best_s, settled, is_plain }
     }
 
     /// Adds a label, with the least time from its state to the goal; its parent is ignored for the first one.
@@ -70,15 +70,15 @@ impl Labels {
             return;
         }
         // More labels than 2^32 do not fit into memory.
-        let number = u32::try_from(self.labels.len()).unwrap_or(u32::MAX);
-        self.labels.push(label);
+        let number = u32::try_from(self.all.len()).unwrap_or(u32::MAX);
+        self.all.push(label);
         self.waiting.push(Waiting { bound_s: label.time_s + rest_s, label: number });
     }
 
     /// Settles the next label; `None` when all are settled.
     pub(super) fn settle(&mut self) -> Option<(u32, Label)> {
         while let Some(Waiting { label: number, .. }) = self.waiting.pop() {
-            let label = self.labels[number as usize];
+            let label = self.all[number as usize];
             if self.is_plain {
                 if label.time_s > self.best_s[label.state as usize] {
                     continue;
@@ -98,16 +98,16 @@ impl Labels {
     fn is_dominated(&self, label: &Label) -> bool {
         self.settled[label.state as usize]
             .iter()
-            .map(|number| &self.labels[*number as usize])
+            .map(|number| &self.all[*number as usize])
             .any(|settled| settled.time_s <= label.time_s && settled.energy_j <= label.energy_j && settled.jumps <= label.jumps)
     }
 
     /// The states from the first label to this one.
     pub(super) fn states_to(&self, mut number: u32) -> Vec<u32> {
-        let mut states = vec![self.labels[number as usize].state];
-        while self.labels[number as usize].parent != number {
-            number = self.labels[number as usize].parent;
-            states.push(self.labels[number as usize].state);
+        let mut states = vec![self.all[number as usize].state];
+        while self.all[number as usize].parent != number {
+            number = self.all[number as usize].parent;
+            states.push(self.all[number as usize].state);
         }
         states.reverse();
         states

@@ -2,7 +2,7 @@
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
-use super::{Arena, ArenaKeys, BoxKeys};
+use super::{ArenaKeys, BoxKeys};
 
 /// How boxes are drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,11 +65,4 @@ fn is_clear(keys: &ArenaKeys, one: &BoxKeys) -> bool {
 /// To the nearest nanometre, so that files have short numbers.
 fn rounded(at_m: f64) -> f64 {
     (at_m * 1e9).round() / 1e9
-}
-
-impl Arena {
-    /// A random arena that is valid.
-    pub(crate) fn random(keys: &ArenaKeys, boxes: &RandomBoxes, seed: u64) -> Option<Self> {
-        Self::new(random_arena(keys, boxes, seed)).ok()
-    }
 }

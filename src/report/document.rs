@@ -47,11 +47,13 @@ pub enum DocumentKind {
     MapMesh,
     /// What an answer takes before it is computed: [`SizeAnswer`](super::SizeAnswer).
     Size,
+    /// A path of a wheeled jumper among boxes: [`ArenaAnswer`](super::ArenaAnswer).
+    Arena,
 }
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -71,6 +73,7 @@ impl DocumentKind {
         Self::Map,
         Self::MapMesh,
         Self::Size,
+        Self::Arena,
     ];
 
     /// The name, as in `schema`.
@@ -95,6 +98,7 @@ impl DocumentKind {
             Self::Map => "map",
             Self::MapMesh => "map-mesh",
             Self::Size => "size",
+            Self::Arena => "arena",
         }
     }
 

@@ -1,6 +1,7 @@
 //! Results as plain data; text, JSON, CSV and GeoJSON are views of it.
 
 mod advice;
+mod arena_answer;
 mod check_answer;
 mod compare_answer;
 mod derating_record;
@@ -39,6 +40,7 @@ mod trade_answer;
 mod trajectory;
 
 pub use advice::AdviceRecord;
+pub use arena_answer::{ArenaAnswer, ArenaHistoryRecord, ArenaPointRecord, arena_text};
 pub use check_answer::{
     CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, JourneyEnd, MissRecord, PairsAnswer, verdict_of,
 };

@@ -1,5 +1,6 @@
 //! The scenario: TOML as typed, then validated, and written again.
 
+mod arena;
 mod backslashes;
 mod budget;
 mod catalogue;
@@ -19,6 +20,7 @@ mod schema;
 mod terrain_source;
 mod trials;
 
+pub use arena::{arena_toml, read_arena};
 pub use budget::Budget;
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
