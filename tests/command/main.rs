@@ -7,6 +7,7 @@ mod installed;
 #[path = "../support/tower.rs"]
 mod tower;
 
+mod arena;
 mod bends;
 mod bounces;
 mod cli_answers;
