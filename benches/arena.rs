@@ -38,9 +38,8 @@ fn any_angle_four_scenarios(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn any_angle_thirty_boxes_twenty_maps(bencher: Bencher<'_, '_>) {
     let boxes = RandomBoxes { count: 30, ..RandomBoxes::default() };
-    let arenas: Vec<Arena> = (0..20)
-        .map(|seed| Arena::new(random_arena(sumo(1).keys(), &boxes, seed)).expect("a valid arena"))
-        .collect();
+    let arenas: Vec<Arena> =
+        (0..20).map(|seed| Arena::new(random_arena(sumo(1).keys(), &boxes, seed)).expect("a valid arena")).collect();
     bencher.bench(|| arenas.iter().filter_map(|arena| any_angle_path(black_box(arena), true).expect("plans")).count());
 }
 

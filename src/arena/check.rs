@@ -137,6 +137,7 @@ fn fault_of(arena: &Arena, from: &PathPoint, to: &PathPoint, kind: Move) -> Opti
         _ if cuts_higher(arena, from, to, high_m) => Some("passes through a higher box"),
         _ if !stands(arena, to.point.x, to.point.y, to.z_m) => Some("ends where there is nothing to stand on"),
         Move::Drive if !is_held(arena, from, to, high_m) => Some("leaves the top of its box"),
+        Move::Drive if is_between(arena, from, to, high_m) => Some("passes between two boxes that touch"),
         Move::Jump if (from.point - to.point).norm() > NEAR_M && !is_one_face(arena, from, to, (low_m, high_m)) => {
             Some("crosses more than one face")
         }
@@ -168,6 +169,28 @@ fn cuts_higher(arena: &Arena, from: &PathPoint, to: &PathPoint, height_m: f64) -
     let higher = arena.boxes().iter().filter(|one| one.height_m > height_m + NEAR_M);
     let length_m = (to.point - from.point).norm();
     higher.filter_map(|one| shares_within(one, from, to, -NEAR_M)).any(|(first, last)| (last - first) * length_m > NEAR_M)
+}
+
+/// Whether somewhere along a segment parallel to an axis there are higher boxes on both its sides.
+fn is_between(arena: &Arena, from: &PathPoint, to: &PathPoint, height_m: f64) -> bool {
+    let (along_x, along_y) = ((from.point.y - to.point.y).abs() <= 1e-12, (from.point.x - to.point.x).abs() <= 1e-12);
+    if along_x == along_y {
+        return false;
+    }
+    let way = to.point - from.point;
+    let ends = arena.boxes().iter().flat_map(|one| if along_x { [one.min.x, one.max.x] } else { [one.min.y, one.max.y] });
+    let share = |at: f64| if along_x { (at - from.point.x) / way.x } else { (at - from.point.y) / way.y };
+    let mut cuts: Vec<f64> = ends.map(share).filter(|share| (0.0..=1.0).contains(share)).chain([0.0, 1.0]).collect();
+    cuts.sort_unstable_by(f64::total_cmp);
+    let side = if along_x { [0.0, 2.0 * NEAR_M] } else { [2.0 * NEAR_M, 0.0] };
+    cuts.windows(2).filter(|pair| (pair[1] - pair[0]) * way.norm() > 4.0 * NEAR_M).any(|pair| {
+        let middle = from.point + f64::midpoint(pair[0], pair[1]) * way;
+        let is_higher = |x: f64, y: f64| {
+            let holds = |one: &&ArenaBox| (one.min.x..=one.max.x).contains(&x) && (one.min.y..=one.max.y).contains(&y);
+            arena.boxes().iter().filter(holds).any(|one| one.height_m > height_m + NEAR_M)
+        };
+        is_higher(middle.x + side[0], middle.y + side[1]) && is_higher(middle.x - side[0], middle.y - side[1])
+    })
 }
 
 /// Whether something of this height is under a point, and nothing higher than it contains the point.

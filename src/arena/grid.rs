@@ -70,6 +70,8 @@ struct Grid<'a> {
     drop_nodes: i32,
     rise_max_m: f64,
     heights: Vec<f64>,
+    /// Columns and rows along which a face runs.
+    faces: [Vec<bool>; 2],
     moves: Vec<Moves>,
     start: usize,
     goal: usize,
@@ -98,7 +100,9 @@ impl<'a> Grid<'a> {
         #[expect(clippy::cast_possible_truncation, reason = "bounded above")]
         let [columns, rows] = counts.map(|count| count as i32);
         let at = |count: i32| (0..count).map(|i| f64::from(i) * spacing_m).collect::<Vec<_>>();
-        let heights = arena.levels().at_nodes(&at(columns), &at(rows));
+        let (xs, ys) = (at(columns), at(rows));
+        let heights = arena.levels().at_nodes(&xs, &ys);
+        let faces = arena.levels().on_faces(&xs, &ys);
         let node = |key: &'static str, place: MapPoint| {
             let near = [place.x, place.y].map(|at| (at / spacing_m).round());
             let near_m = near.map(|index| index * spacing_m);
@@ -117,7 +121,7 @@ impl<'a> Grid<'a> {
         let drop_nodes = if reading == Reading::R1 { jump_nodes } else { 1 };
         let tariff = Tariff::of(arena.jumper(), reading);
         let moves = vec![Moves::default(); heights.len()];
-        Ok(Self { arena, tariff, columns, rows, spacing_m, jump_nodes, drop_nodes, rise_max_m, heights, moves, start, goal })
+        Ok(Self { arena, tariff, columns, rows, spacing_m, jump_nodes, drop_nodes, rise_max_m, heights, faces, moves, start, goal })
     }
 
     fn place(&self, node: usize) -> (i32, i32) {
@@ -170,7 +174,10 @@ impl<'a> Grid<'a> {
                 continue;
             }
             let next = self.beside(place, heading, 1).filter(|next| self.heights[*next] == own_m);
-            if next.is_some_and(|next| !is_diagonal || (is_level && self.is_level_in_four(next))) {
+            let is_open = |next: usize| {
+                if is_diagonal { is_level && self.is_level_in_four(next) } else { !self.is_between_boxes(node, next, heading) }
+            };
+            if next.is_some_and(is_open) {
                 moves.drive |= bit;
             }
             if self.rise_max_m > 0.0 && self.jumps(node, heading) {
@@ -179,6 +186,22 @@ impl<'a> Grid<'a> {
         }
         self.moves[node] = moves;
         moves
+    }
+
+    /// Whether the way to the next node along an axis is closed by two boxes that touch there.
+    fn is_between_boxes(&self, node: usize, next: usize, heading: usize) -> bool {
+        let (i, j) = self.place(node);
+        let is_along_face =
+            if heading % 4 == 0 { self.faces[1][j.unsigned_abs() as usize] } else { self.faces[0][i.unsigned_abs() as usize] };
+        let own_m = self.heights[node];
+        is_along_face && {
+            let mut is_level = true;
+            let (start_m, _) = self.arena.levels().walk(self.point(node), self.point(next), |_| {
+                is_level = false;
+                false
+            });
+            !is_level || start_m != own_m
+        }
     }
 
     /// Whether it can jump: up over one face.

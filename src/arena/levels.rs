@@ -163,6 +163,18 @@ impl Levels {
         heights
     }
 
+    /// Whether a line inside the floor runs along each of these coordinates.
+    pub(super) fn on_faces(&self, xs: &[f64], ys: &[f64]) -> [Vec<bool>; 2] {
+        let on = |lines: &[f64], at: &[f64]| {
+            let is_on = |at: &f64| {
+                let Band { low, high } = Band::of(lines, *at);
+                low != high && low >= 0 && high + 1 < lines.len().cast_signed()
+            };
+            at.iter().map(is_on).collect()
+        };
+        [on(&self.xs, xs), on(&self.ys, ys)]
+    }
+
     /// The least and the greatest height within `ring_m` of a point along x and y, the border of that square left out.
     pub(super) fn within(&self, point: MapPoint, ring_m: f64) -> (f64, f64) {
         let range = |lines: &[f64], at: f64| {

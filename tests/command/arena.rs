@@ -26,7 +26,10 @@ fn the_answer_says_what_it_is_and_how_far_from_the_bound() {
     let exact = text(&["data/arenas/sumo_2.toml"]);
     assert!(exact.starts_with("optimal over the boxes as drawn: 12.3092 s with 1 jump\nwithout jumps: 13.3510 s"), "{exact}");
     let grid = text(&["data/arenas/sumo_2.toml", "--planner", "grid"]);
-    assert!(grid.starts_with("found over this grid, reading R1: 12.5179 s with 1 jump\nno path takes less than: 12.0114 s"), "{grid}");
+    assert!(
+        grid.starts_with("found over this grid, reading R1: 12.5179 s with 1 jump\nno path takes less than: 12.0114 s"),
+        "{grid}"
+    );
     assert!(!grid.contains("optimal"), "{grid}");
     let plain = text(&["data/arenas/sumo_3.toml", "--planner", "grid", "--reading", "R0"]);
     assert!(plain.contains("the optimum at these prices: 12.6482 s; this path takes 4.39 % more"), "{plain}");
@@ -92,7 +95,11 @@ fn every_problem_of_a_file_is_told_at_once_with_its_line() {
     desk.write("odd.toml", ACROSS.replace("speed_m_s = 1.5", "speed_ms = 1.5").replace("height_m = 0.5", "height_m = \"high\""));
     desk.refused(
         &["arena", "odd.toml"],
-        &["unknown key jumper.speed_ms; the nearest known key is jumper.speed_m_s", "jumper.speed_m_s is missing", "box 1: height_m is \"high\", expected a number"],
+        &[
+            "unknown key jumper.speed_ms; the nearest known key is jumper.speed_m_s",
+            "jumper.speed_m_s is missing",
+            "box 1: height_m is \"high\", expected a number",
+        ],
     );
     for (change, sentence) in [
         (("start_m = [1, 3]", "start_m = [4, 3]"), "a place outside of all boxes: it is in box 1"),
@@ -174,8 +181,14 @@ fn the_picture_shows_both_paths_and_is_the_same_each_time() {
     let tree = draw(&["arena.toml", "--planner", "rrt-star", "--nodes", "400"], "tree.svg");
     assert!(tree.contains("rewired: ") && tree.contains("time of the path (s)") && tree.contains("nodes"));
     let driven = draw(&["arena.toml", "--random", "0"], "empty.svg");
-    assert!(!driven.contains("jump, to") && !driven.contains("box with its height") && !driven.contains("without jumps"), "a legend of nothing");
-    assert!(desk.run(&["arena", "arena.toml", "--plot", "picture.png", "--quiet"]).status == 0 && desk.path().join("picture.png").exists());
+    assert!(
+        !driven.contains("jump, to") && !driven.contains("box with its height") && !driven.contains("without jumps"),
+        "a legend of nothing"
+    );
+    assert!(
+        desk.run(&["arena", "arena.toml", "--plot", "picture.png", "--quiet"]).status == 0
+            && desk.path().join("picture.png").exists()
+    );
 }
 
 /// The commands of the document, which also states their first lines.

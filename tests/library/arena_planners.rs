@@ -170,7 +170,9 @@ fn plain_search(arena: &Arena, reading: Reading) -> f64 {
                 }
                 continue;
             }
-            let next_is_level = at(i + di, j + dj) == Some(own);
+            // Between two boxes that touch there is no way.
+            let is_open = |t: f64| height(place(i) + t * step * f64::from(*di), place(j) + t * step * f64::from(*dj)) == own;
+            let next_is_level = at(i + di, j + dj) == Some(own) && is_open(0.25) && is_open(0.75);
             if next_is_level && (heading % 2 == 0 || level(i, j) && level(i + di, j + dj)) {
                 edge(1, unit / jumper.speed_m_s);
             }

@@ -7,6 +7,9 @@ use super::super::{
 };
 use crate::quantity::MapPoint;
 
+/// A smaller ring is none, m.
+const NO_RING_M: f64 = 1e-6;
+
 /// The heights, the rings about their faces, and the limits of jumps.
 pub(super) struct Space<'a> {
     levels: &'a Levels,
@@ -41,7 +44,17 @@ impl<'a> Space<'a> {
     /// How one gets straight from one place to another; `None`: not at all.
     pub(super) fn joined(&self, (from, from_m): (MapPoint, f64), (to, to_m): (MapPoint, f64)) -> Option<Move> {
         if from_m == to_m {
-            let is_clear = !self.rings.iter().any(|ring| passes_through(ring, from, to));
+            let is_clear = if self.ring_m > NO_RING_M {
+                !self.rings.iter().any(|ring| passes_through(ring, from, to))
+            } else {
+                // Without a ring the faces themselves are in the way.
+                let mut is_level = true;
+                let (start_m, _) = self.levels.walk(from, to, |_| {
+                    is_level = false;
+                    false
+                });
+                is_level && start_m == from_m
+            };
             return is_clear.then_some(Move::Drive);
         }
         if (to - from).norm() > self.edge_max_m {
