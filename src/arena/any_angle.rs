@@ -39,6 +39,9 @@ pub fn any_angle_path(arena: &Arena, may_jump: bool) -> Result<Option<ArenaPath>
     if factor != 1.0 {
         return Err(Refusal::Weakens { factor });
     }
+    if arena.jumper().flight.is_some() {
+        return Err(Refusal::Flies);
+    }
     let tariff = Tariff::of(arena.jumper(), Reading::R0);
     Ok(AnyAngle::new(arena, tariff, may_jump).search().map(|points| points.path(tariff)))
 }

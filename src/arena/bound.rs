@@ -25,8 +25,18 @@ pub struct LowerBound {
 pub fn lower_bound(arena: &Arena, reading: Reading, may_jump: bool) -> LowerBound {
     let jumper = arena.jumper();
     let mut tariff = Tariff { speed_factor_per_jump: 1.0, ..Tariff::of(jumper, Reading::R0) };
-    let is_exact = reading == Reading::R0 && jumper.speed_factor_per_jump == 1.0;
-    if reading == Reading::R1 {
+    let is_exact = reading == Reading::R0 && jumper.speed_factor_per_jump == 1.0 && jumper.flight.is_none();
+    if let Some(flight) = jumper.flight {
+        // What a flight takes beyond driving as far grows or falls with its length, which is between those of the highest and of no box.
+        let beyond_s = [jumper.rise_max_m, 0.0]
+            .into_iter()
+            .filter_map(|rise_m| flight.arc(rise_m))
+            .map(|arc| arc.flight_time_s() - arc.line_of_sight().run_m() / jumper.speed_m_s);
+        let least_s = beyond_s.fold(f64::INFINITY, f64::min);
+        tariff.speed_m_s = jumper.speed_m_s.max(flight.along_m_s());
+        tariff.jump_time_s += if least_s.is_finite() { least_s.max(0.0) } else { 0.0 };
+        tariff.flight = None;
+    } else if reading == Reading::R1 {
         let longest_m = arena.keys().grid.jump_length_m * std::f64::consts::SQRT_2;
         let left_s = jumper.jump_time_s - longest_m / jumper.speed_m_s;
         if left_s < 0.0 {

@@ -97,6 +97,8 @@ pub fn check_path(arena: &Arena, path: &ArenaPath) -> Result<CheckedPath, PathFa
         let fall_m = from.z_m - to.z_m;
         sum.length_m += length_m;
         sum.time_s += match kind {
+            // A flight takes its length at the speed along the floor that it took off with.
+            Move::Jump if arena.keys().flight.is_some() => path.tariff.jump_time_s + length_m / flight_speed_m_s(arena),
             Move::Jump if is_whole => path.tariff.jump_time_s,
             Move::Jump => path.tariff.jump_time_s + length_m / speed_m_s,
             Move::Drop if is_whole => (length_m * length_m + fall_m * fall_m).sqrt() / speed_m_s,
@@ -106,7 +108,7 @@ pub fn check_path(arena: &Arena, path: &ArenaPath) -> Result<CheckedPath, PathFa
             sum.jumps += 1;
             speed_m_s *= path.tariff.speed_factor_per_jump;
         }
-        driven_m += if kind == Move::Jump && is_whole { 0.0 } else { length_m };
+        driven_m += if kind == Move::Jump && (is_whole || arena.keys().flight.is_some()) { 0.0 } else { length_m };
     }
     sum.time_s += path.tariff.turn_s_per_rad * sum.turning_rad;
     #[expect(clippy::cast_precision_loss, reason = "few jumps")]
@@ -141,8 +143,30 @@ fn fault_of(arena: &Arena, from: &PathPoint, to: &PathPoint, kind: Move) -> Opti
         Move::Jump if (from.point - to.point).norm() > NEAR_M && !is_one_face(arena, from, to, (low_m, high_m)) => {
             Some("crosses more than one face")
         }
+        Move::Jump if !flies_so(arena, from, to) => Some("is no flight with the take-off of the arena over the edge"),
         _ => None,
     }
+}
+
+/// The speed along the floor of a flight, m/s.
+fn flight_speed_m_s(arena: &Arena) -> f64 {
+    arena.keys().flight.as_ref().map_or(f64::NAN, |keys| keys.takeoff_speed_m_s * libm::cos(keys.takeoff_angle_deg.to_radians()))
+}
+
+/// Whether a jump is the flight of the arena, in small steps: over every box on the way, and down on the landing.
+fn flies_so(arena: &Arena, from: &PathPoint, to: &PathPoint) -> bool {
+    const STEPS: u32 = 1_000;
+    let Some(keys) = &arena.keys().flight else { return true };
+    let way = to.point - from.point;
+    let time_s = way.norm() / flight_speed_m_s(arena);
+    let up_m_s = keys.takeoff_speed_m_s * libm::sin(keys.takeoff_angle_deg.to_radians());
+    let height_m = |time_s: f64| from.z_m + up_m_s * time_s - 0.5 * keys.gravity_m_s2 * time_s * time_s;
+    let is_over = (1..STEPS).all(|step| {
+        let share = f64::from(step) / f64::from(STEPS);
+        let (at, z_m) = (from.point + share * way, height_m(share * time_s));
+        !arena.boxes().iter().any(|one| one.height_m > z_m + NEAR_M && one.contains(at))
+    });
+    is_over && (height_m(time_s) - to.z_m).abs() <= NEAR_M && up_m_s < keys.gravity_m_s2 * time_s
 }
 
 /// The shares of a segment that are within a rectangle, grown by a margin that may be negative.

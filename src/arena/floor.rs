@@ -4,7 +4,7 @@ use super::{
     Jumper,
     keys::{ArenaKeys, BoxKeys},
     levels::Levels,
-    problem::ArenaProblem,
+    problem::{ArenaProblem, Refusal},
 };
 use crate::quantity::MapPoint;
 
@@ -107,7 +107,7 @@ impl Arena {
             }
         };
         let levels = Levels::new(keys.arena.size_m, &boxes);
-        Ok(Self { jumper: Jumper::of(&keys.jumper), keys, boxes, levels, start, goal, heading })
+        Ok(Self { jumper: Jumper::of(&keys.jumper, keys.flight.as_ref()), keys, boxes, levels, start, goal, heading })
     }
 
     /// The keys that it was made of.
@@ -150,6 +150,12 @@ impl Arena {
         &self.levels
     }
 
+    /// Refuses flights of a robot that weakens.
+    pub(super) fn refuse_flight_that_weakens(&self) -> Result<(), Refusal> {
+        let factor = self.jumper.speed_factor_per_jump;
+        if self.jumper.flight.is_some() && factor != 1.0 { Err(Refusal::FliesAndWeakens { factor }) } else { Ok(()) }
+    }
+
     /// The same without its battery; `None` if it has none.
     pub(super) fn without_battery(&self) -> Option<Self> {
         let mut jumper = self.jumper;
@@ -168,7 +174,9 @@ impl Arena {
         };
         let highest_m = self.boxes.iter().map(|one| one.height_m).fold(0.0, f64::max);
         lift("jumper.battery_j", self.jumper.battery_j.is_finite(), &|keys| keys.jumper.battery_j = None);
-        lift("jumper.rise_max_m", may_jump && highest_m > self.jumper.rise_max_m, &|keys| keys.jumper.rise_max_m = highest_m);
+        let flies = self.keys.flight.is_some();
+        lift("jumper.rise_max_m", may_jump && highest_m > self.keys.jumper.rise_max_m, &|keys| keys.jumper.rise_max_m = highest_m);
+        lift("flight", may_jump && flies, &|keys| keys.flight = None);
         lift("arena.inflation_m", self.keys.arena.inflation_m > 0.0, &|keys| keys.arena.inflation_m = 0.0);
         lift("jumper.ring_m", self.jumper.ring_m > 0.0, &|keys| keys.jumper.ring_m = 0.0);
         found
@@ -241,6 +249,7 @@ impl Problems {
             problems.number("arena", "inflation_m", floor.inflation_m, "a length of at least 0", "0 takes the boxes as drawn");
         }
         problems.of_jumper(keys);
+        problems.of_flight(keys);
         problems.of_grid(keys);
         for (number, one) in keys.boxes.iter().enumerate() {
             problems.of_box(number, one, floor.size_m, floor.inflation_m);
@@ -280,6 +289,19 @@ impl Problems {
         if jumper.battery_j.is_some() && jumper.drive_j_per_m == 0.0 && jumper.jump_j == 0.0 && jumper.power_w == 0.0 {
             let help = "give jumper.drive_j_per_m, jumper.jump_j or jumper.power_w, or leave the battery out";
             self.push("jumper", None, "battery_j", "jumper.battery_j bounds an energy that nothing takes".to_owned(), help);
+        }
+    }
+
+    fn of_flight(&mut self, keys: &ArenaKeys) {
+        let Some(flight) = &keys.flight else { return };
+        for (name, found) in [("takeoff_speed_m_s", flight.takeoff_speed_m_s), ("gravity_m_s2", flight.gravity_m_s2)] {
+            if !(found > 0.0 && found <= 1e4) {
+                self.number("flight", name, found, "a number above 0", "remove [flight] to jump by rise and time alone");
+            }
+        }
+        let angle_deg = flight.takeoff_angle_deg;
+        if !(angle_deg > 0.0 && angle_deg < 90.0) {
+            self.number("flight", "takeoff_angle_deg", angle_deg, "an angle above 0 and below 90", "it is measured from the floor");
         }
     }
 

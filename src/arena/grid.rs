@@ -17,7 +17,7 @@ use super::{
     Arena, ArenaPath, Move, PathPoint, Reading, Refusal, Tariff,
     floor::{RISE_TOLERANCE_M, SAME_M},
     labels::{Label, Labels},
-    path::turn_rad,
+    path::{flown, turn_rad},
 };
 use crate::quantity::MapPoint;
 
@@ -56,7 +56,8 @@ pub fn grid_path(arena: &Arena, reading: Reading, may_jump: bool) -> Result<Opti
 struct Moves {
     known: bool,
     drive: u8,
-    jump: u8,
+    /// How many nodes it jumps, by heading; 0: not at all.
+    jump: [u8; 8],
     drop: u8,
 }
 
@@ -67,6 +68,8 @@ struct Grid<'a> {
     rows: i32,
     spacing_m: f64,
     jump_nodes: i32,
+    /// The most nodes that a flight may need.
+    flight_nodes: i32,
     drop_nodes: i32,
     rise_max_m: f64,
     heights: Vec<f64>,
@@ -80,6 +83,7 @@ struct Grid<'a> {
 impl<'a> Grid<'a> {
     fn new(arena: &'a Arena, reading: Reading, may_jump: bool) -> Result<Self, Refusal> {
         let keys = arena.keys();
+        arena.refuse_flight_that_weakens()?;
         let spacing_m = keys.grid.spacing_m;
         let counts = arena.size_m().map(|size_m| (size_m / spacing_m + SAME_M).floor() + 1.0);
         #[expect(clippy::cast_precision_loss, reason = "a million")]
@@ -118,10 +122,29 @@ impl<'a> Grid<'a> {
         let rise_max_m = if may_jump { arena.jumper().rise_max_m } else { 0.0 };
         #[expect(clippy::cast_possible_truncation, reason = "bounded above")]
         let jump_nodes = jump_nodes as i32;
+        // Its range, and as much again to drive before the take-off and after the landing.
+        let flight_m = arena.jumper().flight.map_or(0.0, |flight| 2.0 * flight.range_m() + 2.0 * arena.jumper().ring_m);
+        #[expect(clippy::cast_possible_truncation, reason = "at most 255")]
+        let flight_nodes = (flight_m / spacing_m).ceil().min(255.0) as i32;
         let drop_nodes = if reading == Reading::R1 { jump_nodes } else { 1 };
         let tariff = Tariff::of(arena.jumper(), reading);
         let moves = vec![Moves::default(); heights.len()];
-        Ok(Self { arena, tariff, columns, rows, spacing_m, jump_nodes, drop_nodes, rise_max_m, heights, faces, moves, start, goal })
+        Ok(Self {
+            arena,
+            tariff,
+            columns,
+            rows,
+            spacing_m,
+            jump_nodes,
+            flight_nodes,
+            drop_nodes,
+            rise_max_m,
+            heights,
+            faces,
+            moves,
+            start,
+            goal,
+        })
     }
 
     fn place(&self, node: usize) -> (i32, i32) {
@@ -180,8 +203,8 @@ impl<'a> Grid<'a> {
             if next.is_some_and(is_open) {
                 moves.drive |= bit;
             }
-            if self.rise_max_m > 0.0 && self.jumps(node, heading) {
-                moves.jump |= bit;
+            if self.rise_max_m > 0.0 {
+                moves.jump[heading] = self.jump_nodes_from(node, heading);
             }
         }
         self.moves[node] = moves;
@@ -191,8 +214,11 @@ impl<'a> Grid<'a> {
     /// Whether the way to the next node along an axis is closed by two boxes that touch there.
     fn is_between_boxes(&self, node: usize, next: usize, heading: usize) -> bool {
         let (i, j) = self.place(node);
-        let is_along_face =
-            if heading % 4 == 0 { self.faces[1][j.unsigned_abs() as usize] } else { self.faces[0][i.unsigned_abs() as usize] };
+        let is_along_face = if heading.is_multiple_of(4) {
+            self.faces[1][j.unsigned_abs() as usize]
+        } else {
+            self.faces[0][i.unsigned_abs() as usize]
+        };
         let own_m = self.heights[node];
         is_along_face && {
             let mut is_level = true;
@@ -204,13 +230,24 @@ impl<'a> Grid<'a> {
         }
     }
 
-    /// Whether it can jump: up over one face.
-    fn jumps(&self, node: usize, heading: usize) -> bool {
-        let Some(landing) = self.beside(self.place(node), heading, self.jump_nodes) else { return false };
+    /// How many nodes it jumps: those of the grid, or the fewest that have room for the flight; 0: it cannot.
+    fn jump_nodes_from(&self, node: usize, heading: usize) -> u8 {
+        let all = if self.tariff.flight.is_some() { 2..=self.flight_nodes } else { self.jump_nodes..=self.jump_nodes };
+        let nodes = all.into_iter().find(|nodes| self.jumps(node, heading, *nodes));
+        nodes.and_then(|nodes| u8::try_from(nodes).ok()).unwrap_or(0)
+    }
+
+    /// Whether it can jump so many nodes: up over one face.
+    fn jumps(&self, node: usize, heading: usize, nodes: i32) -> bool {
+        let Some(landing) = self.beside(self.place(node), heading, nodes) else { return false };
         let (own_m, top_m) = (self.heights[node], self.heights[landing]);
         let rise_m = top_m - own_m;
         if rise_m <= 0.0 || rise_m > self.rise_max_m + RISE_TOLERANCE_M || self.is_ring(landing) {
             return false;
+        }
+        if let Some(flight) = &self.tariff.flight {
+            let ends = (self.point(node), self.point(landing));
+            return flight.split(self.arena.levels(), ends, rise_m, self.arena.jumper().ring_m).is_some();
         }
         let mut faces = 0;
         let (start_m, _) = self.arena.levels().walk(self.point(node), self.point(landing), |step| {
@@ -239,9 +276,10 @@ impl<'a> Grid<'a> {
     /// The least time from a node to the goal: the octile distance at the cheapest price of a node.
     fn rest(&self) -> impl Fn((i32, i32)) -> f64 + use<> {
         let node_s = |length_m: f64| {
-            let drive_s = length_m / self.tariff.speed_m_s;
+            let fastest_m_s = self.tariff.flight.map_or(0.0, |flight| flight.along_m_s()).max(self.tariff.speed_m_s);
+            let drive_s = length_m / fastest_m_s;
             let jump_s = self.tariff.jump_time_s / f64::from(self.jump_nodes);
-            if self.tariff.reading == Reading::R1 { drive_s.min(jump_s) } else { drive_s }
+            if self.tariff.reading == Reading::R1 && self.tariff.flight.is_none() { drive_s.min(jump_s) } else { drive_s }
         };
         // Just below the true price: rounding must not let the bound pass it.
         let below = 1.0 - 1e-12;
@@ -272,22 +310,19 @@ impl<'a> Grid<'a> {
             }
             let place = self.place(node);
             let moves = self.moves_of(node);
-            for (kind, bits, steps) in [
-                (Move::Drive, moves.drive, 1),
-                (Move::Jump, moves.jump, self.jump_nodes),
-                (Move::Drop, moves.drop, self.drop_nodes),
-            ] {
-                if bits == 0 {
-                    continue;
-                }
-                for next_heading in (0..8).filter(|next| bits >> next & 1 == 1) {
+            for (next_heading, turn_s) in turns_s[heading].iter().enumerate() {
+                let has = |bits: u8| i32::from(bits >> next_heading & 1);
+                let jump_nodes = i32::from(moves.jump[next_heading]);
+                let all =
+                    [(Move::Drive, has(moves.drive)), (Move::Jump, jump_nodes), (Move::Drop, has(moves.drop) * self.drop_nodes)];
+                for (kind, steps) in all.into_iter().filter(|(_, steps)| *steps > 0) {
                     let Some(next) = self.beside(place, next_heading, steps) else { continue };
                     let unit_m = if next_heading % 2 == 1 { self.spacing_m * SQRT_2 } else { self.spacing_m };
                     let length_m = f64::from(steps) * unit_m;
                     let rise_m = self.heights[next] - self.heights[node];
-                    let move_s = self.tariff.move_s(kind, length_m, rise_m, label.jumps) + turns_s[heading][next_heading];
+                    let move_s = self.tariff.move_s(kind, length_m, rise_m, label.jumps) + turn_s;
                     let jump = u32::from(kind == Move::Jump);
-                    let energy_j = label.energy_j + jumper.energy_j(self.tariff.driven_m(kind, length_m), jump, move_s);
+                    let energy_j = label.energy_j + jumper.energy_j(self.tariff.driven_m(kind, length_m, rise_m), jump, move_s);
                     if energy_j > jumper.battery_j {
                         continue;
                     }
@@ -326,7 +361,15 @@ impl<'a> Grid<'a> {
                 std::cmp::Ordering::Greater => Move::Jump,
                 std::cmp::Ordering::Less => Move::Drop,
             });
-            points.push(PathPoint { point, z_m, reached_by });
+            let next = PathPoint { point, z_m, reached_by };
+            let flight = self.tariff.flight.filter(|_| reached_by == Some(Move::Jump));
+            let split = flight.zip(points.last()).and_then(|(flight, last)| {
+                flight.split(self.arena.levels(), (last.point, point), z_m - last.z_m, self.arena.jumper().ring_m)
+            });
+            match (split, points.last()) {
+                (Some(split), Some(last)) => points.extend(flown(last, next, split)),
+                _ => points.push(next),
+            }
         }
         ArenaPath { points: ArenaPath::simplify(points), time_s, tariff: self.tariff }
     }

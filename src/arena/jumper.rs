@@ -1,6 +1,9 @@
 //! The robot.
 
-use super::keys::JumperKeys;
+use super::{
+    Flight,
+    keys::{FlightKeys, JumperKeys},
+};
 
 /// A wheeled robot that jumps, with every default filled in. [`Arena::new`](super::Arena::new) checks it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,19 +30,23 @@ pub struct Jumper {
     pub power_w: f64,
     /// The energy that there is, J; infinite without a bound.
     pub battery_j: f64,
+    /// The flight of a jump; `None`: jumps are rules. The greatest rise is then also that of the flight.
+    pub flight: Option<Flight>,
 }
 
 impl Jumper {
     /// With the defaults of the keys.
     ///
     /// Turning at the driving speed `v` with wheels `b` apart: each wheel runs `b / 2` a radian, which takes `b / (2 v)`.
-    pub(super) fn of(keys: &JumperKeys) -> Self {
+    pub(super) fn of(keys: &JumperKeys, flight: Option<&FlightKeys>) -> Self {
+        let flight = flight.map(Flight::of);
+        let highest_m = flight.map_or(f64::INFINITY, |flight| flight.highest_box_m(keys.ring_m).max(0.0));
         let by_wheels = keys.wheelbase_m.map_or(0.0, |wheelbase_m| wheelbase_m / (2.0 * keys.speed_m_s));
         Self {
             speed_m_s: keys.speed_m_s,
             turn_s_per_rad: keys.turn_s_per_rad.unwrap_or(by_wheels),
             jump_time_s: keys.jump_time_s,
-            rise_max_m: keys.rise_max_m,
+            rise_max_m: keys.rise_max_m.min(highest_m),
             ring_m: keys.ring_m,
             jump_edge_max_m: keys.jump_edge_max_m,
             speed_factor_per_jump: keys.speed_factor_per_jump,
@@ -47,6 +54,7 @@ impl Jumper {
             jump_j: keys.jump_j,
             power_w: keys.power_w,
             battery_j: keys.battery_j.unwrap_or(f64::INFINITY),
+            flight,
         }
     }
 

@@ -11,6 +11,9 @@ pub struct ArenaKeys {
     pub arena: FloorKeys,
     /// The robot.
     pub jumper: JumperKeys,
+    /// Jumps as flights; absent: jumps are rules, a rise and a time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flight: Option<FlightKeys>,
     /// The nodes of the grid.
     #[serde(default)]
     pub grid: GridKeys,
@@ -88,6 +91,19 @@ pub struct JumperKeys {
     pub battery_j: Option<f64>,
 }
 
+/// The flight of every jump, beside which `jump_time_s` is the time before the take-off.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FlightKeys {
+    /// Its take-off speed, m/s.
+    pub takeoff_speed_m_s: f64,
+    /// Its take-off angle above the floor, degrees.
+    pub takeoff_angle_deg: f64,
+    /// Gravity, m/s^2.
+    #[serde(default = "gravity_m_s2")]
+    pub gravity_m_s2: f64,
+}
+
 /// The nodes of the grid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -104,6 +120,10 @@ impl Default for GridKeys {
     fn default() -> Self {
         Self { spacing_m: spacing_m(), jump_length_m: jump_length_m() }
     }
+}
+
+const fn gravity_m_s2() -> f64 {
+    9.81
 }
 
 const fn one() -> f64 {

@@ -11,6 +11,7 @@
 
 use super::floor::{ArenaBox, RISE_TOLERANCE_M, SAME_M};
 use crate::quantity::MapPoint;
+use nalgebra::Vector2;
 
 /// Heights by cells.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +36,17 @@ pub(super) struct Step {
     pub(super) to_m: f64,
     /// The cells about the point, if lines in both directions are crossed there.
     pub(super) corner: Option<Quadrants>,
+    /// Whether a line across x is crossed, and one across y.
+    across: [bool; 2],
+}
+
+impl Step {
+    /// The sine of the angle between a direction and the face, the smaller one at a corner.
+    pub(super) fn sine(&self, direction: Vector2<f64>) -> f64 {
+        let of_x = if self.across[0] { direction.x.abs() } else { 1.0 };
+        let of_y = if self.across[1] { direction.y.abs() } else { 1.0 };
+        of_x.min(of_y)
+    }
 }
 
 /// What a segment crosses.
@@ -207,14 +219,15 @@ impl Levels {
             }
             let both = x.next - at <= same && y.next - at <= same;
             let corner = both.then(|| self.about(x.about_line(), y.about_line()));
-            if x.next - at <= same {
+            let across = [x.next - at <= same, y.next - at <= same];
+            if across[0] {
                 x.advance();
             }
-            if y.next - at <= same {
+            if across[1] {
                 y.advance();
             }
             let to_m = height(&x, &y);
-            if to_m != now_m && !visit(Step { at, from_m: now_m, to_m, corner }) {
+            if to_m != now_m && !visit(Step { at, from_m: now_m, to_m, corner, across }) {
                 return (start_m, to_m);
             }
             now_m = to_m;

@@ -79,6 +79,16 @@ fn goes_on_straight(a: MapPoint, b: MapPoint, c: MapPoint) -> bool {
     ab.perp(&bc).abs() <= 1e-12 * lengths && along > 0.0
 }
 
+/// A way up over a face, as it is flown: driven to the take-off, flown, and driven on.
+pub(super) fn flown(from: &PathPoint, to: PathPoint, [takeoff, landing]: [f64; 2]) -> [PathPoint; 3] {
+    let at = |share: f64| from.point + share * (to.point - from.point);
+    [
+        PathPoint { point: at(takeoff), reached_by: Some(Move::Drive), ..*from },
+        PathPoint { point: at(landing), ..to },
+        PathPoint { reached_by: Some(Move::Drive), ..to },
+    ]
+}
+
 /// The unsigned angle between two directions, rad; 0 where one has no length.
 pub(super) fn turn_rad(before: [f64; 2], after: [f64; 2]) -> f64 {
     let cross = before[0] * after[1] - before[1] * after[0];

@@ -81,6 +81,18 @@ pub enum Refusal {
         /// The factor.
         factor: f64,
     },
+    /// The planner has no exact answer for jumps that are flights.
+    #[error(
+        "[flight] gives every jump a length of its own, and any-angle planning jumps without one: plan over the grid or with RRT*, or remove \
+         [flight]"
+    )]
+    Flies,
+    /// Two keys that no planner takes together.
+    #[error("jumper.speed_factor_per_jump is {factor} beside [flight]: no planner takes both together: leave one of them out")]
+    FliesAndWeakens {
+        /// The factor.
+        factor: f64,
+    },
     /// A start or goal that RRT* cannot stand on.
     #[error(
         "arena.{key} is closer than jumper.ring_m ({ring_m} m) to the face of a box, where RRT* does not stand: move it, or take a smaller \

@@ -1,6 +1,7 @@
 //! What the moves of a path take.
 
-use super::{Jumper, Move};
+use super::{Flight, Jumper, Move};
+use crate::ballistics::Arc;
 
 /// How the paper on the Jumping Sumo may be read: it leaves open what its jumps and drops cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +36,9 @@ pub struct Tariff {
     pub speed_factor_per_jump: f64,
     /// How jumps and drops are priced.
     pub reading: Reading,
+    /// The flight of a jump, which is then priced the same in both readings: the time before the take-off, that of the flight, and the rest of
+    /// the way at the driving speed.
+    pub flight: Option<Flight>,
 }
 
 impl Tariff {
@@ -46,6 +50,7 @@ impl Tariff {
             jump_time_s: jumper.jump_time_s,
             speed_factor_per_jump: jumper.speed_factor_per_jump,
             reading,
+            flight: jumper.flight,
         }
     }
 
@@ -61,6 +66,11 @@ impl Tariff {
     /// The time of a move that goes so far along the floor and up, after some jumps, s.
     pub(super) fn move_s(&self, kind: Move, length_m: f64, rise_m: f64, jumps: u32) -> f64 {
         let speed_m_s = self.speed_after_m_s(jumps);
+        if let Some(arc) = self.arc(kind, rise_m) {
+            // What is driven after the landing is driven more slowly by a robot that weakens: the planner refuses both together.
+            let driven_m = (length_m - arc.line_of_sight().run_m()).max(0.0);
+            return self.jump_time_s + arc.flight_time_s() + driven_m / speed_m_s;
+        }
         match (kind, self.reading) {
             (Move::Drive, _) | (Move::Drop, Reading::R0) => length_m / speed_m_s,
             (Move::Drop, Reading::R1) => libm::hypot(length_m, rise_m) / speed_m_s,
@@ -69,8 +79,16 @@ impl Tariff {
         }
     }
 
+    /// The arc of a jump that is a flight.
+    fn arc(&self, kind: Move, rise_m: f64) -> Option<Arc> {
+        self.flight.filter(|_| kind == Move::Jump).and_then(|flight| flight.arc(rise_m))
+    }
+
     /// How much of a move is driven, m.
-    pub(super) fn driven_m(&self, kind: Move, length_m: f64) -> f64 {
+    pub(super) fn driven_m(&self, kind: Move, length_m: f64, rise_m: f64) -> f64 {
+        if let Some(arc) = self.arc(kind, rise_m) {
+            return (length_m - arc.line_of_sight().run_m()).max(0.0);
+        }
         if kind == Move::Jump && self.reading == Reading::R1 { 0.0 } else { length_m }
     }
 }

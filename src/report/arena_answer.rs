@@ -44,10 +44,27 @@ pub struct ArenaAnswer {
     pub energy_j: Option<f64>,
     /// The time of the same planner's path without jumps, s; null if there is none, or if jumps were not allowed anyway.
     pub without_jumps_s: Option<f64>,
+    /// The flight of every jump; null where jumps are rules.
+    pub flight: Option<ArenaFlightRecord>,
     /// The path from the start to the goal; empty without one.
     pub path: Vec<ArenaPointRecord>,
     /// The time of the path of RRT* as its nodes grow; empty for other planners.
     pub history: Vec<ArenaHistoryRecord>,
+}
+
+/// What the flight of a jump reaches.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ArenaFlightRecord {
+    /// Its apex over the take-off, m.
+    pub apex_m: f64,
+    /// Its range over level ground, m.
+    pub range_m: f64,
+    /// What the landing keeps from the edge, m.
+    pub landing_past_edge_m: f64,
+    /// The highest box, over the take-off, on which it lands so far past the edge, m; below 0 if there is none.
+    pub highest_box_m: f64,
+    /// The boxes, counted from 1, that are higher than this over the floor.
+    pub boxes_too_high: Vec<u64>,
 }
 
 /// A point of a path.
@@ -114,11 +131,26 @@ pub fn arena_text(answer: &ArenaAnswer) -> String {
         let energy = answer.energy_j.map(|energy_j| format!(", {energy_j:.2} J")).unwrap_or_default();
         sheet.line(format_args!("length {length_m:.3} m, turning {turning_deg:.1} deg{energy}"));
     }
+    flight(&mut sheet, answer);
     for point in &answer.path {
         let (x, y, z) = (place(point.x_m), place(point.y_m), place(point.z_m));
         sheet.line(format_args!("  {:<6} {x}, {y}, {z} m", point.reached_by.as_deref().unwrap_or("start")));
     }
     sheet.into_text()
+}
+
+/// What the flight of a jump reaches, and which boxes are too high for it.
+fn flight(sheet: &mut Sheet, answer: &ArenaAnswer) {
+    let Some(flight) = &answer.flight else { return };
+    let ArenaFlightRecord { apex_m, range_m, landing_past_edge_m, highest_box_m, boxes_too_high } = flight;
+    sheet.line(format_args!(
+        "flight: apex {apex_m:.4} m, range {range_m:.4} m; to land {landing_past_edge_m} m past its edge a box may be {:.4} m high",
+        highest_box_m.max(0.0)
+    ));
+    if !boxes_too_high.is_empty() {
+        let numbers: Vec<String> = boxes_too_high.iter().map(ToString::to_string).collect();
+        sheet.line(format_args!("too high from the floor: box {}", numbers.join(", ")));
+    }
 }
 
 fn no_path(sheet: &mut Sheet, answer: &ArenaAnswer, by: &str) {
@@ -132,6 +164,7 @@ fn no_path(sheet: &mut Sheet, answer: &ArenaAnswer, by: &str) {
             sheet.line(format_args!("{what} {bound_s:.4} s"));
         }
     }
+    flight(sheet, answer);
     for key in &answer.stopped_by {
         sheet.line(format_args!("stopped by {key}: without this limit there is a path"));
     }

@@ -40,7 +40,7 @@ mod trade_answer;
 mod trajectory;
 
 pub use advice::AdviceRecord;
-pub use arena_answer::{ArenaAnswer, ArenaHistoryRecord, ArenaPointRecord, arena_text};
+pub use arena_answer::{ArenaAnswer, ArenaFlightRecord, ArenaHistoryRecord, ArenaPointRecord, arena_text};
 pub use check_answer::{
     CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, JourneyEnd, MissRecord, PairsAnswer, verdict_of,
 };

@@ -11,7 +11,7 @@ use super::{
 use crate::arena::{Arena, ArenaKeys, ArenaProblem};
 
 /// The keys of an arena: table, name, whether it is two numbers, whether it is needed.
-const KEYS: [(&str, &str, bool, bool); 22] = [
+const KEYS: [(&str, &str, bool, bool); 25] = [
     ("arena", "size_m", true, true),
     ("arena", "start_m", true, true),
     ("arena", "goal_m", true, true),
@@ -29,6 +29,9 @@ const KEYS: [(&str, &str, bool, bool); 22] = [
     ("jumper", "jump_j", false, false),
     ("jumper", "power_w", false, false),
     ("jumper", "battery_j", false, false),
+    ("flight", "takeoff_speed_m_s", false, true),
+    ("flight", "takeoff_angle_deg", false, true),
+    ("flight", "gravity_m_s2", false, false),
     ("grid", "spacing_m", false, false),
     ("grid", "jump_length_m", false, false),
     (BOX, "centre_m", true, true),
@@ -40,7 +43,7 @@ const KEYS: [(&str, &str, bool, bool); 22] = [
 const BOX: &str = "box";
 
 /// The tables, in the order of the file.
-const TABLES: [&str; 4] = ["arena", "jumper", "grid", BOX];
+const TABLES: [&str; 5] = ["arena", "jumper", "flight", "grid", BOX];
 
 /// Reads an arena from TOML and applies settings to it, each as `table.key=value` beside the caller's name for it.
 ///
@@ -199,7 +202,7 @@ impl Reader {
                 self.add(table, 0, name, value, place);
             }
             _ => {
-                let help = format!("write it as jumper.speed_m_s=1.9; the tables are {}", TABLES[..3].join(", "));
+                let help = format!("write it as jumper.speed_m_s=1.9; the tables are {}", TABLES[..4].join(", "));
                 self.problem(place, ("", ""), ProblemKind::Syntax, "found no table.key=value of an arena".to_owned(), help);
             }
         }
@@ -212,13 +215,12 @@ impl Reader {
     /// The arena, or all problems.
     fn arena(mut self) -> Result<Arena, Vec<ScenarioProblem>> {
         let is_readable = self.problems.iter().all(|problem| problem.kind != ProblemKind::Syntax);
-        for table in ["arena", "jumper"] {
-            let is_absent =
-                !self.values.keys().any(|key| key.0 == table) && !self.problems.iter().any(|problem| problem.key.table == table);
-            if is_readable && is_absent {
-                for (_, name, ..) in KEYS.iter().filter(|key| key.0 == table && key.3) {
-                    self.missing(table, 0, name, Place::Nowhere);
-                }
+        for (table, name, ..) in KEYS.iter().filter(|key| key.3 && key.0 != BOX && is_readable) {
+            let is_wanted = *table != "flight" || self.values.keys().any(|key| key.0 == *table);
+            let key = ((*table).to_owned(), 0, (*name).to_owned());
+            let is_told = self.problems.iter().any(|problem| problem.key.is_one_of(table, &[*name]));
+            if is_wanted && !self.values.contains_key(&key) && !is_told {
+                self.missing(table, 0, name, Place::Nowhere);
             }
         }
         if !self.problems.is_empty() {

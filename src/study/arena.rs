@@ -5,7 +5,7 @@ use crate::{
         Arena, ArenaPath, CheckedPath, GrownTree, PathFault, Reading, Refusal, RrtStarOptions, any_angle_path, check_path,
         grid_path, grow_rrt_star, lower_bound,
     },
-    report::{ArenaAnswer, ArenaHistoryRecord, ArenaPointRecord},
+    report::{ArenaAnswer, ArenaFlightRecord, ArenaHistoryRecord, ArenaPointRecord},
 };
 
 /// A planner, with what it alone needs.
@@ -80,6 +80,7 @@ pub fn plan_in_arena(arena: &Arena, planner: ArenaPlanner, may_jump: bool) -> Re
         turning_deg: checked.map(|checked| checked.turning_rad.to_degrees()),
         energy_j: checked.filter(|_| arena.jumper().has_energy()).map(|CheckedPath { energy_j, .. }| energy_j),
         without_jumps_s: checked_without.map(|checked| checked.time_s),
+        flight: flight(arena),
         path: path.as_ref().map(records).unwrap_or_default(),
         history: tree.as_ref().map(history).unwrap_or_default(),
     };
@@ -117,6 +118,20 @@ fn stopped_by(arena: &Arena, planner: ArenaPlanner, may_jump: bool) -> Result<Ve
         }
     }
     Ok(found)
+}
+
+/// What the flight of a jump reaches.
+fn flight(arena: &Arena) -> Option<ArenaFlightRecord> {
+    let (flight, landing_past_edge_m) = (arena.jumper().flight?, arena.jumper().ring_m);
+    let highest_box_m = flight.highest_box_m(landing_past_edge_m);
+    let boxes = arena.boxes().iter().zip(1..);
+    Some(ArenaFlightRecord {
+        apex_m: flight.apex_m(),
+        range_m: flight.range_m(),
+        landing_past_edge_m,
+        highest_box_m,
+        boxes_too_high: boxes.filter(|(one, _)| one.height_m > highest_box_m).map(|(_, number)| number).collect(),
+    })
 }
 
 fn records(path: &ArenaPath) -> Vec<ArenaPointRecord> {

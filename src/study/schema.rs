@@ -102,7 +102,7 @@ fn arena_schema() -> Value {
     schema["properties"]["scenario"] = arena;
     close(&mut schema, false);
     open_parts(&mut schema);
-    schema["title"] = "chta arena".into();
+    schema["title"] = format!("chta {}", DocumentKind::Arena.name()).into();
     schema["properties"]["schema"]["const"] = DocumentKind::Arena.schema().into();
     schema["properties"]["scenario"]["description"] = "The arena as used, in SI units and degrees.".into();
     schema

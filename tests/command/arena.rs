@@ -159,7 +159,7 @@ fn random_boxes_are_those_of_the_seed_and_can_be_written() {
         desk.read("map.toml")
     };
     let first = map("1");
-    assert_eq!((first.matches("[[box]]").count(), &first == &map("1"), first == map("2")), (6, true, false));
+    assert_eq!((first.matches("[[box]]").count(), first == map("1"), first == map("2")), (6, true, false));
     let again = desk.json(&["arena", "map.toml", "--planner", "grid"]);
     assert_eq!(again["scenario"]["box"].as_array().unwrap().len(), 6);
     desk.refused(&["arena", "arena.toml", "--random", "3", "--random-sizes-m", "1,0"], &["--random-sizes-m: found a length"]);

@@ -17,7 +17,7 @@ use crate::desk::chta;
 
 /// Commands whose answers have every part that an answer may have: found and refused, with proof, with trials, on maps with and without
 /// a projection, with propellant, with commands in steps, with risk.
-const COMMANDS: [&str; 51] = [
+const COMMANDS: [&str; 52] = [
     "hop data/scenarios/paper_76m.toml --from 0 --to 20",
     "hop data/scenarios/paper_76m.toml --from 0 --to 25",
     "hop data/scenarios/simple.toml",
@@ -69,6 +69,7 @@ const COMMANDS: [&str; 51] = [
     "fan data/terrain/mars_crater_field.tif --from 96,84 --headings 5 --length 40 --scenario data/scenarios/mars_crater_field.toml --dry-run",
     "arena data/arenas/sumo_2.toml --planner grid --set jumper.jump_j=1.4 --set jumper.wheelbase_m=0.2 --set arena.start_heading_deg=0",
     "arena data/arenas/sumo_3.toml --no-jump",
+    "arena data/arenas/sumo_2.toml --planner grid --set flight.takeoff_speed_m_s=4 --set flight.takeoff_angle_deg=76",
     "arena data/arenas/sumo_4.toml --planner rrt-star --nodes 300",
     "arena data/arenas/sumo_2.toml --set jumper.drive_j_per_m=1 --set jumper.battery_j=20",
 ];

@@ -9,6 +9,7 @@ mod tiff;
 #[path = "../support/tower.rs"]
 mod tower;
 
+mod arena_flight;
 mod arena_paper;
 mod arena_planners;
 mod ballistic_paper;

@@ -69,6 +69,7 @@ pub struct GrownTree {
 /// # Errors
 /// A start or goal within the ring of a face.
 pub fn grow_rrt_star(arena: &Arena, options: &RrtStarOptions, may_jump: bool) -> Result<GrownTree, Refusal> {
+    arena.refuse_flight_that_weakens()?;
     let space = Space::new(arena, may_jump);
     for (key, end) in [("start_m", arena.start()), ("goal_m", arena.goal())] {
         if space.height_m(end).is_none() {

@@ -1,7 +1,7 @@
 //! Where RRT* stands and drives.
 
 use super::super::{
-    Arena, Move,
+    Arena, Flight, Move,
     floor::{RISE_TOLERANCE_M, SAME_M},
     levels::{Face, Levels},
 };
@@ -20,6 +20,7 @@ pub(super) struct Space<'a> {
     pub(super) ring_m: f64,
     pub(super) edge_max_m: f64,
     rise_max_m: f64,
+    flight: Option<Flight>,
 }
 
 impl<'a> Space<'a> {
@@ -32,13 +33,29 @@ impl<'a> Space<'a> {
         let rise_max_m = if may_jump { jumper.rise_max_m } else { 0.0 };
         let is_jumpable = |face: &Face| may_jump && (face.sides_m[0] - face.sides_m[1]).abs() <= rise_max_m + RISE_TOLERANCE_M;
         let jumpable = faces.into_iter().filter(is_jumpable).collect();
-        Self { levels: arena.levels(), rings, jumpable, ring_m: jumper.ring_m, edge_max_m: jumper.jump_edge_max_m, rise_max_m }
+        Self {
+            levels: arena.levels(),
+            rings,
+            jumpable,
+            ring_m: jumper.ring_m,
+            edge_max_m: jumper.jump_edge_max_m,
+            rise_max_m,
+            flight: jumper.flight,
+        }
     }
 
     /// The height at a point, m; `None` within a ring.
     pub(super) fn height_m(&self, point: MapPoint) -> Option<f64> {
         let (low_m, high_m) = self.levels.within(point, self.ring_m);
         (low_m == high_m).then_some(low_m)
+    }
+
+    /// Where a jump that is a flight takes off and lands, as shares of the way.
+    pub(super) fn split(&self, (from, from_m): (MapPoint, f64), (to, to_m): (MapPoint, f64)) -> Option<[f64; 2]> {
+        let rise_m = to_m - from_m;
+        let flight =
+            self.flight.filter(|_| rise_m > 0.0 && self.rise_max_m > 0.0 && rise_m <= self.rise_max_m + RISE_TOLERANCE_M)?;
+        flight.split(self.levels, (from, to), rise_m, self.ring_m)
     }
 
     /// How one gets straight from one place to another; `None`: not at all.
@@ -57,10 +74,13 @@ impl<'a> Space<'a> {
             };
             return is_clear.then_some(Move::Drive);
         }
+        let is_up = to_m > from_m;
+        if is_up && self.flight.is_some() {
+            return self.split((from, from_m), (to, to_m)).map(|_| Move::Jump);
+        }
         if (to - from).norm() > self.edge_max_m {
             return None;
         }
-        let is_up = to_m > from_m;
         if is_up && to_m - from_m > self.rise_max_m + RISE_TOLERANCE_M {
             return None;
         }

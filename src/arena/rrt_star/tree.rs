@@ -1,7 +1,10 @@
 //! The tree: nodes with their parents and times.
 
 use super::{
-    super::{Arena, ArenaPath, Move, PathPoint, Tariff, path::turn_rad},
+    super::{
+        Arena, ArenaPath, Move, PathPoint, Tariff,
+        path::{flown, turn_rad},
+    },
     space::Space,
 };
 use crate::quantity::MapPoint;
@@ -106,7 +109,8 @@ impl<'a> Tree<'a> {
             if self.tariff.turn_s_per_rad > 0.0 { self.tariff.turn_s_per_rad * turn_rad(from.direction, direction) } else { 0.0 };
         let part_s = self.tariff.move_s(kind, length_m, z_m - from.z_m, from.jumps) + turn_s;
         let jump = u32::from(kind == Move::Jump);
-        let energy_j = from.energy_j + self.arena.jumper().energy_j(length_m, jump, part_s);
+        let energy_j =
+            from.energy_j + self.arena.jumper().energy_j(self.tariff.driven_m(kind, length_m, z_m - from.z_m), jump, part_s);
         Reached { kind, time_s: from.time_s + part_s, jumps: from.jumps + jump, energy_j, direction }
     }
 
@@ -223,7 +227,17 @@ impl<'a> Tree<'a> {
             let node = &self.nodes[*number as usize];
             PathPoint { point: node.point, z_m: node.z_m, reached_by: (*number != 0).then_some(node.kind) }
         });
-        let points = points.collect();
+        let mut flying: Vec<PathPoint> = Vec::new();
+        for point in points {
+            let place = |point: &PathPoint| (point.point, point.z_m);
+            let split =
+                flying.last().filter(|last| point.z_m > last.z_m).and_then(|last| self.space.split(place(last), place(&point)));
+            match (split, flying.last()) {
+                (Some(split), Some(last)) => flying.extend(flown(last, point, split)),
+                _ => flying.push(point),
+            }
+        }
+        let points = flying;
         self.best = Some((self.nodes[goal as usize].time_s, points));
     }
 
