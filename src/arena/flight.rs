@@ -8,11 +8,7 @@
 //!            <----- x(h) ----->
 //! ```
 
-use super::{
-    floor::{RISE_TOLERANCE_M, SAME_M},
-    keys::FlightKeys,
-    levels::Levels,
-};
+use super::{floor::RISE_TOLERANCE_M, keys::FlightKeys, levels::Levels};
 use crate::{
     ballistics::{Arc, LineOfSight},
     quantity::MapPoint,
@@ -77,7 +73,13 @@ impl Flight {
 
     /// Where a straight way up over one face takes off and lands, as shares of its length: the middle of what there is room for. `None`: there is no
     /// room, or more than one face.
-    pub(super) fn split(&self, levels: &Levels, (from, to): (MapPoint, MapPoint), rise_m: f64, ring_m: f64) -> Option<[f64; 2]> {
+    pub(super) fn split(
+        &self,
+        levels: &Levels,
+        (from, to): (MapPoint, MapPoint),
+        (from_m, to_m): (f64, f64),
+        ring_m: f64,
+    ) -> Option<[f64; 2]> {
         let (way, mut face, mut faces) = (to - from, 0.0, 0);
         let length_m = way.norm();
         let mut sine = 1.0;
@@ -86,9 +88,10 @@ impl Flight {
             (face, sine) = (step.at * length_m, step.sine(way / length_m));
             faces == 1
         });
-        if faces != 1 || (end_m - start_m - rise_m).abs() > SAME_M {
+        if faces != 1 || start_m != from_m || end_m != to_m {
             return None;
         }
+        let rise_m = to_m - from_m;
         let run_m = self.arc(rise_m)?.line_of_sight().run_m();
         // The take-off, from the start of the way: in time to be over the edge, and so late that the landing is past it.
         let past_m = ring_m / sine;

@@ -247,7 +247,7 @@ impl<'a> Grid<'a> {
         }
         if let Some(flight) = &self.tariff.flight {
             let ends = (self.point(node), self.point(landing));
-            return flight.split(self.arena.levels(), ends, rise_m, self.arena.jumper().ring_m).is_some();
+            return flight.split(self.arena.levels(), ends, (own_m, top_m), self.arena.jumper().ring_m).is_some();
         }
         let mut faces = 0;
         let (start_m, _) = self.arena.levels().walk(self.point(node), self.point(landing), |step| {
@@ -364,7 +364,7 @@ impl<'a> Grid<'a> {
             let next = PathPoint { point, z_m, reached_by };
             let flight = self.tariff.flight.filter(|_| reached_by == Some(Move::Jump));
             let split = flight.zip(points.last()).and_then(|(flight, last)| {
-                flight.split(self.arena.levels(), (last.point, point), z_m - last.z_m, self.arena.jumper().ring_m)
+                flight.split(self.arena.levels(), (last.point, point), (last.z_m, z_m), self.arena.jumper().ring_m)
             });
             match (split, points.last()) {
                 (Some(split), Some(last)) => points.extend(flown(last, next, split)),

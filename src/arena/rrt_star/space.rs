@@ -55,7 +55,7 @@ impl<'a> Space<'a> {
         let rise_m = to_m - from_m;
         let flight =
             self.flight.filter(|_| rise_m > 0.0 && self.rise_max_m > 0.0 && rise_m <= self.rise_max_m + RISE_TOLERANCE_M)?;
-        flight.split(self.levels, (from, to), rise_m, self.ring_m)
+        flight.split(self.levels, (from, to), (from_m, to_m), self.ring_m)
     }
 
     /// How one gets straight from one place to another; `None`: not at all.
