@@ -249,13 +249,14 @@ impl<'a> Grid<'a> {
             let ends = (self.point(node), self.point(landing));
             return flight.split(self.arena.levels(), ends, (own_m, top_m), self.arena.jumper().ring_m).is_some();
         }
-        let mut faces = 0;
+        let (mut faces, mut is_right) = (0, true);
         let (start_m, _) = self.arena.levels().walk(self.point(node), self.point(landing), |step| {
             faces += 1;
-            step.from_m == own_m && step.to_m == top_m
+            is_right &= step.from_m == own_m && step.to_m == top_m;
+            is_right
         });
         // At once into the box, or over its face on the way.
-        faces == usize::from(start_m == own_m) && (start_m == own_m || start_m == top_m)
+        is_right && if faces == 0 { start_m == top_m } else { faces == 1 && start_m == own_m }
     }
 
     /// Whether it can drop: its first node is lower, nothing on the way rises, and it does not end on a ring.
