@@ -51,6 +51,7 @@
 //! quantity     angles, slopes, points, ids, sign-safe roots
 //! world        bodies, the hopper, friction cones, directions of travel
 //! ballistics   the equations of one arc: every limit as an interval of its take-off slope
+//! arena        a flat floor with boxes, a wheeled robot that jumps, three planners
 //! terrain      elevation rasters with their overlays, slices of them, synthetic terrain from a seed
 //! chain        the polygonal chain and what each segment allows
 //! hop          the hop test: feasible take-off slopes between two stations of a chain, many hops on a segment
@@ -79,6 +80,7 @@
 //!
 //! `cli` (default): the command `chta`. `plot` (default): the SVG picture. Neither is needed by the analysis.
 
+pub mod arena;
 pub mod ballistics;
 pub mod chain;
 pub mod drive;

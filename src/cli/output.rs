@@ -5,6 +5,7 @@ use std::{
     fs::File,
     io::{self, ErrorKind, Write},
     path::Path,
+    time::Duration,
 };
 
 use chta::{
@@ -185,6 +186,14 @@ pub(crate) fn warned(quiet: bool, parts: &[&[String]]) -> Vec<String> {
     let warnings = parts.concat();
     warn_all(quiet, &warnings);
     warnings
+}
+
+/// Prints how long a computation took on standard error.
+pub(crate) fn say_run_time(quiet: bool, time: Duration) {
+    if !quiet {
+        // An error on writing to standard error cannot be reported.
+        let _ = writeln!(io::stderr(), "process_s: {:.6}", time.as_secs_f64());
+    }
 }
 
 /// Prints a warning on standard error.

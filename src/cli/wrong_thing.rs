@@ -42,6 +42,8 @@ pub(crate) enum Role {
     Friction,
     /// `[uncertainty] errors`.
     Errors,
+    /// ARENA of `arena`.
+    Arena,
 }
 
 impl Role {
@@ -76,6 +78,7 @@ impl Role {
             Self::KeepOut => "surface.keep_out",
             Self::Friction => "surface.friction_raster",
             Self::Errors => "uncertainty.errors",
+            Self::Arena => "ARENA",
         }
     }
 
@@ -103,6 +106,7 @@ impl Role {
             Self::Errors => {
                 "a CSV of measured errors with columns such as takeoff_speed_error_fraction and takeoff_angle_error_deg"
             }
+            Self::Arena => "an arena (TOML) with the tables arena, jumper and box",
         }
     }
 
@@ -149,6 +153,8 @@ impl Role {
                 Self::Pairs => *kind == Kind::PairsCsv,
                 Self::Friction => of_raster,
                 Self::Errors => *kind == Kind::MeasuredCsv,
+                // By its extension it is taken for a scenario; its reader knows the tables.
+                Self::Arena => *kind == Kind::Scenario,
                 // The zones' reader knows the terrain's map, to which they have to be converted.
                 Self::KeepOut => of_raster || matches!(kind, Kind::GeoJson | Kind::Json | Kind::Shapes(_)),
             }

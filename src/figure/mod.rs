@@ -21,6 +21,8 @@
 //! distinguished by colour alone.
 
 mod angle_panel;
+mod arena;
+mod arena_tree;
 mod axes;
 mod bands;
 mod bitmap;
@@ -57,6 +59,7 @@ mod samples;
 #[cfg(test)]
 mod tests;
 
+pub use arena::{ArenaFigure, ArenaPanel, draw_arena};
 pub use chains::{
     CompareFigure, ComparedScenario, Flight, HopProfile, HopProfilesFigure, ProofClass, ProofFigure, ProofGap, ProofStretch,
     TradeAxis, TradeCell, TradeFigure, draw_compare, draw_hop_profiles, draw_proof, draw_trade,

@@ -53,11 +53,13 @@ pub enum DocumentKind {
     MapTravel,
     /// What an answer takes before it is computed: [`SizeAnswer`](super::SizeAnswer).
     Size,
+    /// A path of a wheeled jumper among boxes: [`ArenaAnswer`](super::ArenaAnswer).
+    Arena,
 }
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -80,6 +82,7 @@ impl DocumentKind {
         Self::MapMesh,
         Self::MapTravel,
         Self::Size,
+        Self::Arena,
     ];
 
     /// The name, as in `schema`.
@@ -107,6 +110,7 @@ impl DocumentKind {
             Self::MapMesh => "map-mesh",
             Self::MapTravel => "map-travel",
             Self::Size => "size",
+            Self::Arena => "arena",
         }
     }
 

@@ -1,6 +1,7 @@
 //! Results as plain data; text, JSON, CSV and GeoJSON are views of it.
 
 mod advice;
+mod arena_answer;
 mod check_answer;
 mod compare_answer;
 mod derating_record;
@@ -43,6 +44,7 @@ mod travel_simulate_answer;
 mod travel_text;
 
 pub use advice::AdviceRecord;
+pub use arena_answer::{ArenaAnswer, ArenaFlightRecord, ArenaHistoryRecord, ArenaPointRecord, arena_text};
 pub use check_answer::{
     CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, JourneyEnd, MissRecord, PairsAnswer, verdict_of,
 };

@@ -103,6 +103,8 @@ pub struct DriveRefusalRecord {
 pub struct TravelFrontRecord {
     /// Against which amount.
     pub amount: Amount,
+    /// The most hops that were looked at: those of the plan.
+    pub hops_max: u64,
     /// Whether labels were left out, so that better paths may be missing.
     pub labels_capped: bool,
     /// The paths, in ascending order of hops.

@@ -450,7 +450,7 @@ pub(crate) fn nearest_key(table: &str, name: &str) -> String {
 }
 
 /// A value in the notation of a user: numbers without rows of zeros.
-fn value_text(value: &toml::Value) -> String {
+pub(super) fn value_text(value: &toml::Value) -> String {
     match value {
         toml::Value::Float(number) if number.is_finite() && *number != 0.0 && !(1e-4..1e12).contains(&number.abs()) => {
             format!("{number:e}")
@@ -461,7 +461,7 @@ fn value_text(value: &toml::Value) -> String {
 }
 
 /// A part of the user's text, short enough for one sentence.
-fn shortened(text: &str) -> String {
+pub(super) fn shortened(text: &str) -> String {
     const LONGEST: usize = 80;
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{}...", &text[..end]),
@@ -492,7 +492,7 @@ fn tables() -> impl Iterator<Item = &'static str> {
 }
 
 /// A TOML value without its spans; `None` for kinds that no key takes.
-fn plain(value: &DeValue<'_>) -> Option<toml::Value> {
+pub(super) fn plain(value: &DeValue<'_>) -> Option<toml::Value> {
     Some(match value {
         DeValue::String(text) => toml::Value::String(text.to_string()),
         DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).map_or_else(

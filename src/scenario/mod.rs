@@ -1,5 +1,6 @@
 //! The scenario: TOML as typed, then validated, and written again.
 
+mod arena;
 mod backslashes;
 mod budget;
 mod catalogue;
@@ -21,6 +22,7 @@ mod terrain_source;
 mod trials;
 mod values;
 
+pub use arena::{arena_toml, read_arena};
 pub use budget::Budget;
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;

@@ -12,9 +12,13 @@
 //! require      the least capability with which the goal can be reached
 //! trade        a verdict for every value of one or two keys
 //! compare      several scenarios side by side
+//! arena        a path of a wheeled jumper among boxes
 //! ```
 
 mod alike;
+mod arena;
+#[cfg(feature = "plot")]
+mod arena_picture;
 #[cfg(feature = "plot")]
 mod captions;
 mod case;
@@ -73,6 +77,7 @@ mod value_scan;
 mod variation;
 
 pub use alike::ask_the_same;
+pub use arena::{ArenaError, ArenaPlanned, ArenaPlanner, plan_in_arena};
 #[cfg(feature = "plot")]
 pub use captions::{conditions, wheels};
 pub use case::{Case, CaseError, Commands};

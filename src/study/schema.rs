@@ -4,10 +4,11 @@ use schemars::{JsonSchema, generate::SchemaSettings};
 use serde_json::{Value, json};
 
 use crate::{
+    arena::ArenaKeys,
     report::{
-        CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, MeshCheckAnswer,
-        MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer,
-        SizeAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+        ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
+        MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer,
+        SimulateAnswer, SizeAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
     },
     scenario::scenario_schema,
 };
@@ -68,6 +69,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::MapMesh => derived::<MeshMapAnswer>(),
         DocumentKind::MapTravel => derived::<TravelMapAnswer>(),
         DocumentKind::Size => derived::<SizeAnswer>(),
+        DocumentKind::Arena => return arena_schema(),
     };
     close(&mut schema, false);
     open_parts(&mut schema);
@@ -85,6 +87,27 @@ fn answer_schema(kind: DocumentKind) -> Value {
     } else {
         json!({ "description": "The scenario as used, in SI units and degrees.", "$ref": used["$ref"] })
     };
+    schema
+}
+
+/// The schema of an answer in an arena, whose scenario is the arena.
+fn arena_schema() -> Value {
+    let mut schema = derived::<ArenaAnswer>();
+    let mut arena = SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<ArenaKeys>().to_value();
+    let parts = arena.as_object_mut().and_then(|keys| keys.remove("$defs"));
+    if let Some(keys) = arena.as_object_mut() {
+        keys.remove("$schema");
+        keys.remove("title");
+    }
+    for (name, part) in parts.as_ref().and_then(Value::as_object).into_iter().flatten() {
+        schema["$defs"][name] = part.clone();
+    }
+    schema["properties"]["scenario"] = arena;
+    close(&mut schema, false);
+    open_parts(&mut schema);
+    schema["title"] = format!("chta {}", DocumentKind::Arena.name()).into();
+    schema["properties"]["schema"]["const"] = DocumentKind::Arena.schema().into();
+    schema["properties"]["scenario"]["description"] = "The arena as used, in SI units and degrees.".into();
     schema
 }
 

@@ -8,9 +8,9 @@ use std::{
     path::Path,
 };
 
-use crate::desk::{CHAIN, Desk, FORWARD_ONLY, Ran};
+use crate::desk::{ACROSS, CHAIN, Desk, FORWARD_ONLY, Ran};
 
-const COMMANDS: [&str; 15] = [
+const COMMANDS: [&str; 16] = [
     "run",
     "slice",
     "map",
@@ -21,6 +21,7 @@ const COMMANDS: [&str; 15] = [
     "trade",
     "compare",
     "simulate",
+    "arena",
     "synth",
     "bodies",
     "completions",
@@ -43,6 +44,9 @@ const ON_LARGE_INPUTS: [&str; 2] = ["--input-max-gib", "--memory-max-mib"];
 
 /// The roadmaps of plans over meshes, tested in `mesh_plan.rs`.
 const ON_MESHES: [&str; 2] = ["--roadmap", "--roadmap-output"];
+
+/// Of missions that drive, tested in `travel.rs`.
+const ON_WHEELS: [&str; 1] = ["--alternatives"];
 
 /// The mark of missing data, tested in `missing_data.rs`.
 const ON_MISSING_DATA: [&str; 1] = ["--no-data"];
@@ -981,6 +985,38 @@ const SIMULATE: [Trial; 29] = [
 ];
 
 /// Errors of execution for trials.
+/// Without the run time on standard error, which is another one each time.
+const ARENA: [Trial; 12] = [
+    ("--planner", &["arena", "arena.toml", "--quiet"], &["arena", "arena.toml", "--quiet", "--planner", "grid"]),
+    (
+        "--reading",
+        &["arena", "arena.toml", "--quiet", "--planner", "grid"],
+        &["arena", "arena.toml", "--quiet", "--planner", "grid", "--reading", "R0"],
+    ),
+    ("--no-jump", &["arena", "arena.toml", "--quiet"], &["arena", "arena.toml", "--quiet", "--no-jump"]),
+    (
+        "--seed",
+        &["arena", "arena.toml", "--quiet", "--planner", "rrt-star", "--nodes", "300"],
+        &["arena", "arena.toml", "--quiet", "--planner", "rrt-star", "--nodes", "300", "--seed", "7"],
+    ),
+    (
+        "--nodes",
+        &["arena", "arena.toml", "--quiet", "--planner", "rrt-star", "--nodes", "300"],
+        &["arena", "arena.toml", "--quiet", "--planner", "rrt-star", "--nodes", "400"],
+    ),
+    ("--random", &["arena", "arena.toml", "--quiet"], &["arena", "arena.toml", "--quiet", "--random", "5"]),
+    (
+        "--random-sizes-m",
+        &["arena", "arena.toml", "--quiet", "--random", "9", "-o", "as_used.toml"],
+        &["arena", "arena.toml", "--quiet", "--random", "9", "-o", "as_used.toml", "--random-sizes-m", "0.6,0.8"],
+    ),
+    ("--set", &["arena", "arena.toml", "--quiet"], &["arena", "arena.toml", "--quiet", "--set", "jumper.speed_m_s=2"]),
+    ("--output", &["arena", "arena.toml", "--quiet"], &["arena", "arena.toml", "--quiet", "-o", "as_used.toml"]),
+    ("--plot", &["arena", "arena.toml", "--quiet"], &["arena", "arena.toml", "--quiet", "--plot", "arena.svg"]),
+    ("--format", &["arena", "arena.toml", "--quiet"], &["arena", "arena.toml", "--quiet", "--format", "json"]),
+    ("--quiet", &["arena", "arena.toml"], &["arena", "arena.toml", "--quiet"]),
+];
+
 const ERRORS: &str =
     "\n[uncertainty]\ntakeoff_speed_sigma_fraction = 0.01\ndrift_along_sigma_m = 0.1\ngoal_tolerance_m = 2.0\ntrials = 200\n";
 
@@ -1049,6 +1085,7 @@ const SYNTH_OPTIONS: [(&str, &str); 26] = [
 
 fn desk() -> Desk {
     let desk = Desk::with_dem();
+    desk.write("arena.toml", ACROSS);
     desk.write("starts.csv", "x_m,y_m\n3,4\n15,16\n");
     desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
     let over_mesh = "mesh = \"plate.obj\"\nroute = \"free\"\nstart_m = [1, 1, 1]\ngoal_m = [7, 7, 2]";
@@ -1101,13 +1138,16 @@ fn every_option_changes_the_output() {
         ("trade", &TRADE),
         ("compare", &COMPARE),
         ("simulate", &SIMULATE),
+        ("arena", &ARENA),
         ("completions", &[]),
         ("man", &MAN),
     ];
     for (command, trials) in all {
         let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
         let elsewhere = |option: &str| {
-            [&ON_A_PROJECTED_MAP[..], &ON_THE_TIME_ALONE, &ON_LARGE_INPUTS, &ON_MESHES, &ON_MISSING_DATA].concat().contains(&option)
+            [&ON_A_PROJECTED_MAP[..], &ON_THE_TIME_ALONE, &ON_LARGE_INPUTS, &ON_MESHES, &ON_WHEELS, &ON_MISSING_DATA]
+                .concat()
+                .contains(&option)
         };
         let here: BTreeSet<_> = options(command).into_iter().filter(|option| !elsewhere(option)).collect();
         assert_eq!(tried, here, "{command}: an option without a trial, or the reverse");

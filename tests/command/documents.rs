@@ -4,10 +4,11 @@
 
 use std::{collections::BTreeSet, path::Path, sync::OnceLock};
 
+use chta::arena::ArenaKeys;
 use chta::report::{
-    CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
-    MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer,
-    SimulateAnswer, SizeAnswer, TradeAnswer,
+    ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer,
+    MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer,
+    RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
 use serde::{Serialize, de::DeserializeOwned};
@@ -16,7 +17,12 @@ use crate::desk::chta;
 
 /// Commands whose answers have every part that an answer may have: found and refused, with proof, with trials, on maps with and without
 /// a projection, with propellant, with commands in steps, with risk.
-const COMMANDS: [&str; 47] = [
+const COMMANDS: [&str; 57] = [
+    "plan data/drive/mars_rover.toml --alternatives",
+    "plan data/drive/mars_rover.toml --set budget.mission_time_max_s=100",
+    "plan data/drive/mars_rover.toml --set drive.travel=drive --set drive.slope_up_max_deg=1",
+    "map data/drive/mars_rover.toml --set drive.travel=drive --return",
+    "simulate data/drive/mars_rover.toml --trials 50 --compare --success-min 0.1",
     "hop data/scenarios/paper_76m.toml --from 0 --to 20",
     "hop data/scenarios/paper_76m.toml --from 0 --to 25",
     "hop data/scenarios/simple.toml",
@@ -66,6 +72,11 @@ const COMMANDS: [&str; 47] = [
      --scenario data/scenarios/mars_crater_field.toml",
     "map data/terrain/mars_crater_field.tif --start 96,84 --scenario data/scenarios/mars_crater_field.toml --dry-run",
     "fan data/terrain/mars_crater_field.tif --from 96,84 --headings 5 --length 40 --scenario data/scenarios/mars_crater_field.toml --dry-run",
+    "arena data/arenas/sumo_2.toml --planner grid --set jumper.jump_j=1.4 --set jumper.wheelbase_m=0.2 --set arena.start_heading_deg=0",
+    "arena data/arenas/sumo_3.toml --no-jump",
+    "arena data/arenas/sumo_2.toml --planner grid --set flight.takeoff_speed_m_s=4 --set flight.takeoff_angle_deg=76",
+    "arena data/arenas/sumo_4.toml --planner rrt-star --nodes 300",
+    "arena data/arenas/sumo_2.toml --set jumper.drive_j_per_m=1 --set jumper.battery_j=20",
 ];
 
 /// The JSON of the commands above, of a comparison, of a run with its trials, and of maps of a known projection.
@@ -138,6 +149,9 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::MapMesh => of::<MeshMapAnswer>(text),
         DocumentKind::CheckMesh => of::<MeshCheckAnswer>(text),
         DocumentKind::PlanMesh | DocumentKind::RunMesh => of::<MeshPlanAnswer>(text),
+        DocumentKind::PlanTravel => of::<TravelAnswer>(text),
+        DocumentKind::MapTravel => of::<TravelMapAnswer>(text),
+        DocumentKind::SimulateTravel => of::<TravelSimulateAnswer>(text),
         DocumentKind::Simulate => of::<SimulateAnswer>(text),
         DocumentKind::SimulateMesh => of::<MeshSimulateAnswer>(text),
         DocumentKind::SimulateExperiment => of::<ExperimentAnswer>(text),
@@ -147,6 +161,7 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::Fan => of::<FanAnswer>(text),
         DocumentKind::Map => of::<MapAnswer>(text),
         DocumentKind::Size => of::<SizeAnswer>(text),
+        DocumentKind::Arena => of::<ArenaAnswer>(text),
     }
 }
 
@@ -205,6 +220,11 @@ fn what_is_no_answer_is_refused_with_its_key() {
 fn the_scenario_inside_an_answer_reads_back_as_it_was() {
     for (command, text) in documents() {
         let document: serde_json::Value = serde_json::from_str(text).unwrap();
+        if kind_of(text) == DocumentKind::Arena {
+            let keys: ArenaKeys = serde_json::from_value(document["scenario"].clone()).unwrap();
+            assert_eq!(serde_json::to_value(keys).unwrap(), document["scenario"], "{command}");
+            continue;
+        }
         let alone = std::slice::from_ref(&document["scenario"]);
         for written in document["scenario"].as_array().map_or(alone, Vec::as_slice) {
             let scenario = Scenario::from_document(written).unwrap_or_else(|problems| panic!("{command}: {problems:?}"));

@@ -4,12 +4,12 @@
 
 use std::{fs, path::Path};
 
-use crate::desk::Desk;
+use crate::desk::{ACROSS, Desk};
 
 /// A command that ends with 0, and one that ends with 1.
 type Case = (&'static str, &'static [&'static str], Option<&'static [&'static str]>);
 
-const CASES: [Case; 16] = [
+const CASES: [Case; 17] = [
     ("run", &["run", "scenario.toml", "-o", "out"], Some(&["run", "slippery.toml", "-o", "out"])),
     ("slice", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], None),
     ("fan", &["fan", "ground.tif", "--from", "9,9", "--headings", "4", "--length", "5", "--scenario", "map.toml"], None),
@@ -37,6 +37,7 @@ const CASES: [Case; 16] = [
         Some(&["compare", "scenario.toml", "slippery.toml", "--require-all"]),
     ),
     ("simulate", &["simulate", "trials.toml"], Some(&["simulate", "slippery.toml"])),
+    ("arena", &["arena", "arena.toml"], Some(&["arena", "arena.toml", "--no-jump"])),
     ("synth", &["synth", "--rows", "9", "--cols", "9", "-o", "new.tif"], None),
     ("bodies", &["bodies"], None),
     ("completions", &["completions", "zsh"], None),
@@ -58,6 +59,7 @@ fn every_command_ends_with_the_status_of_the_documents() {
         desk.write("trials.toml", desk.read("scenario.toml") + trials);
         desk.write("slippery.toml", desk.read("scenario.toml").replace("= 0.6", "= 0.05") + trials);
         desk.write("weak_map.toml", desk.read("map.toml").replace("= 6.0", "= 0.3"));
+        desk.write("arena.toml", ACROSS);
         desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
         for (status, words) in [(0, Some(yes)), (1, no)] {
             let Some(words) = words else { continue };

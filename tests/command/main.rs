@@ -7,6 +7,7 @@ mod installed;
 #[path = "../support/tower.rs"]
 mod tower;
 
+mod arena;
 mod bends;
 mod bounces;
 mod cli_answers;
@@ -51,6 +52,7 @@ mod success;
 mod takeoff_speeds;
 mod trade_compare;
 mod trajectory;
+mod travel;
 mod trials_causes;
 mod trials_parts;
 mod verbose;

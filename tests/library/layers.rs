@@ -6,11 +6,12 @@
 use std::{fs, path::Path};
 
 /// The layers of modules, from the top. The last two are the binary's own modules, below all of the library.
-const LADDER: [&str; 20] = [
+const LADDER: [&str; 21] = [
     "progress",
     "quantity",
     "world",
     "ballistics",
+    "arena",
     "terrain",
     "chain",
     "hop",

@@ -9,6 +9,9 @@ mod tiff;
 #[path = "../support/tower.rs"]
 mod tower;
 
+mod arena_flight;
+mod arena_paper;
+mod arena_planners;
 mod ballistic_paper;
 mod ballistics_conflicts;
 mod ballistics_precision;

@@ -1,5 +1,6 @@
 //! The command line as typed: the commands, the options that several of them share, and the parsers of positions and counts.
 
+mod arena;
 mod journeys;
 mod maps;
 mod position;
@@ -17,6 +18,7 @@ use super::{
     threads::thread_count,
 };
 
+pub(crate) use arena::ArenaArgs;
 pub(crate) use journeys::{
     CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
 };
@@ -54,6 +56,7 @@ pub(crate) enum Command {
     Require(RequireArgs),
     Trade(TradeArgs),
     Compare(CompareArgs),
+    Arena(Box<ArenaArgs>),
     Synth(Box<SynthArgs>),
     /// List the known bodies with gravity, radius and their source
     #[command(after_help = "Example:\n  chta bodies")]

@@ -1,5 +1,6 @@
 //! One file per command, and one for a question over a mesh.
 
+pub(super) mod arena;
 pub(super) mod bodies;
 pub(super) mod check;
 mod check_over_mesh;

@@ -1,5 +1,6 @@
 //! From the command line to a scenario and its chain.
 
+mod arena;
 mod bare;
 mod ends;
 mod mesh_hop;
@@ -23,6 +24,7 @@ use chta::{
 };
 use serde::Serialize;
 
+pub(crate) use arena::load_arena;
 pub(crate) use bare::{Bare, ScenarioEnds, load_bare, load_map};
 pub(crate) use ends::EndOptions;
 pub(crate) use mesh_hop::{MeshHopInput, load_mesh_hop};

@@ -61,7 +61,8 @@ pub fn travel_plan(case: &Case, options: TravelOptions, progress: &dyn Progress)
     if options.alternatives {
         answer.alternatives = Some(alternatives(&search, &mission, progress)?);
     }
-    answer.front = options.front.map(|amount| front(&search, amount, progress)).transpose()?;
+    let hops_max = mission.path.as_ref().map_or(0, |path| hops_of(&path.totals));
+    answer.front = options.front.map(|amount| front(&search, (amount, hops_max), progress)).transpose()?;
     let warnings = warnings(&search, &mission);
     Ok(TravelPlanned { case: search.free.case, ground: search.free.ground, mission, stretches: walked, answer, warnings })
 }
@@ -143,13 +144,17 @@ fn alternatives(
     Ok(rows)
 }
 
-fn front(search: &TravelSearch, amount: Amount, progress: &dyn Progress) -> Result<TravelFrontRecord, JourneyError> {
-    let front = search.front(amount, progress)?;
+fn front(
+    search: &TravelSearch,
+    (amount, hops_max): (Amount, u64),
+    progress: &dyn Progress,
+) -> Result<TravelFrontRecord, JourneyError> {
+    let front = search.front((amount, hops_max), progress)?;
     for path in &front.paths {
         agreed_sums(search, &stretches(search, path)?, &path.totals)?;
     }
     let paths = front.paths.iter().map(|path| TravelSumsRecord::new(&path.totals)).collect();
-    Ok(TravelFrontRecord { amount, labels_capped: front.capped, paths })
+    Ok(TravelFrontRecord { amount, hops_max, labels_capped: front.capped, paths })
 }
 
 fn answer(search: &TravelSearch, mission: &Mission, walked: &[Stretch]) -> Result<TravelAnswer, JourneyError> {

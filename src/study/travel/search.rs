@@ -70,11 +70,14 @@ impl TravelSearch {
         Ok(TravelToGo { field, travel: self.keys.travel, nodes: self.free.nodes })
     }
 
-    /// The front of hops against an amount.
-    pub(super) fn front(&self, amount: Amount, progress: &dyn Progress) -> Result<MissionFront, JourneyError> {
+    /// The front of up to so many hops against an amount.
+    pub(super) fn front(&self, (amount, hops_max): (Amount, u64), progress: &dyn Progress) -> Result<MissionFront, JourneyError> {
         let objective = Objective::of(amount);
         let mut question = self.question(self.keys.travel, &objective);
         question.route.commands = SearchedCommands::Distinct;
+        #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
+        let budgets = self.free.budgets.with(Amount::Hops, hops_max as f64).unwrap_or(self.free.budgets);
+        question.route.budgets = &budgets;
         Ok(front_of_missions(&self.free.ground, &self.free.nodes, &self.free.goal, (amount, &question), progress)?)
     }
 }
