@@ -2,8 +2,9 @@
 
 use std::io::{self, Write};
 
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::{DeratingRecord, HopRecord, ObjectiveRecord, PropellantShortage};
 use crate::{
@@ -111,9 +112,18 @@ pub struct TravelFrontRecord {
     pub paths: Vec<TravelSumsRecord>,
 }
 
+/// Says what the tag of [`TravelLegRecord`] is.
+fn describe_kind(schema: &mut Schema) {
+    let variants = schema.get_mut("oneOf").and_then(Value::as_array_mut).into_iter().flatten();
+    for kind in variants.filter_map(|variant| variant.pointer_mut("/properties/kind")?.as_object_mut()) {
+        kind.insert("description".to_owned(), "`drive`: driven without a stop; `hop`: one hop.".into());
+    }
+}
+
 /// One leg of a mission.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[schemars(transform = describe_kind)]
 pub enum TravelLegRecord {
     /// Driven without a stop, in straight lines.
     Drive(Box<DriveLegRecord>),

@@ -86,13 +86,20 @@ impl Neighbours {
 
 /// The share of its speed that a rover loses by slip, over the slope of the ground along its way: straight between stated slopes, and
 /// constant beyond them. Where no slope below 0 is stated, it goes by the steepness, up or down.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SlipCurve {
     /// As stated: slopes in degrees, ascending, with shares.
     stated: Vec<[f64; 2]>,
     /// The same with the tangents of the slopes.
     points: Vec<(f64, f64)>,
     by_steepness: bool,
+}
+
+impl Default for SlipCurve {
+    /// No slip.
+    fn default() -> Self {
+        Self { stated: Vec::new(), points: Vec::new(), by_steepness: true }
+    }
 }
 
 impl SlipCurve {

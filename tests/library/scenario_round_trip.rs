@@ -120,8 +120,13 @@ fn toml() -> impl Strategy<Value = String> {
     (keys, choices).prop_map(|(keys, (ground, friction, points, degrees))| {
         // A mesh as it stands, with a free route over it.
         let in_space = ground == 3 && degrees;
+        // Wheels, with what they need.
+        let on_wheels = ground == 0 && points && degrees;
         let kept = |key: &Key| match (key.table, key.name) {
             _ if in_space && is_off_a_mesh(key) => false,
+            ("drive", "idle_power_w") => false,
+            ("drive", _) => on_wheels,
+            ("search", "risk") | ("contact", _) if on_wheels => false,
             ("search", "planner" | "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => in_space,
             ("terrain", "dem") => ground == 1,
             ("terrain", "mesh" | "mesh_scale") => ground == 3,
@@ -157,6 +162,9 @@ fn toml() -> impl Strategy<Value = String> {
         for (key, value) in sensible_hopper(&keys) {
             let value = match (key.table, key.name) {
                 ("terrain", "mesh") if in_space => Some("\"cave.stl\"".to_owned()),
+                ("drive", "speed_m_s") if on_wheels => Some("0.5".to_owned()),
+                ("drive", "slope_up_max_deg") if on_wheels => Some("20.0".to_owned()),
+                ("drive", "wheelbase_m") if on_wheels => Some("1.5".to_owned()),
                 ("terrain", "route") if in_space => Some("\"free\"".to_owned()),
                 ("terrain", "start_m" | "goal_m") if in_space => {
                     Some(value.map_or("[1.5, -2.0, 3.0]".to_owned(), |pair| pair.replace(']', ", -7.25]")))
