@@ -417,7 +417,7 @@ fn mistaken_path(path: &str) -> Option<String> {
 /// The hint for an unknown key: the nearest known key or, where none is near, the keys of the intended table.
 ///
 /// A name is near if it differs from a known one, or from its part before an underscore, in at most a third of its letters (one in
-/// short names). An exact name counts in any table; otherwise keys of the given, or nearly given, table come first.
+/// short names). An exact name counts in any table; otherwise keys of the given, or nearly given, table alone.
 pub(crate) fn nearest_key(table: &str, name: &str) -> String {
     let meant = tables().find(|known| strsim::damerau_levenshtein(table, known) <= 2);
     let near = |key: &&Key| -> Option<(usize, bool)> {
@@ -432,8 +432,8 @@ pub(crate) fn nearest_key(table: &str, name: &str) -> String {
             key.name.match_indices('_').filter_map(|(end, _)| apart(&key.name[..end]).map(|distance| 2 * distance + 1));
         let distance = apart(key.name).map(|distance| 2 * distance).into_iter().chain(beginnings).min()?;
         let own = meant == Some(key.table);
-        // In other tables only a nearly exact name counts.
-        (own || meant.is_none() || distance <= 1).then_some((distance, !own))
+        // In other tables only an exact name counts: of its beginnings, such as `speed`, many tables have some.
+        (own || meant.is_none() || distance == 0).then_some((distance, !own))
     };
     let best = CATALOGUE.iter().filter_map(|key| Some((near(&key)?, key))).min_by_key(|((distance, elsewhere), _)| {
         // A wrong table counts like two wrong letters.

@@ -73,6 +73,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
     };
     close(&mut schema, false);
     open_parts(&mut schema);
+    open_tagged(&mut schema);
     schema["title"] = format!("chta {}", kind.name()).into();
     schema["properties"]["schema"]["const"] = kind.schema().into();
     let mut scenario = scenario_schema();
@@ -126,6 +127,29 @@ fn open_parts(document: &mut Value) {
         .collect();
     for part in parts {
         if let Some(keys) = document["$defs"][&part].as_object_mut() {
+            keys.remove("unevaluatedProperties");
+        }
+    }
+}
+
+/// A definition that a tagged variant consists of does not know the tag: the variant is closed, it is not.
+fn open_tagged(document: &mut Value) {
+    fn tagged(schema: &Value, names: &mut Vec<String>) {
+        if let Some(keys) = schema.as_object() {
+            let name = keys.get("$ref").and_then(Value::as_str).and_then(|path| path.strip_prefix("#/$defs/"));
+            names.extend(name.filter(|_| keys.contains_key("properties")).map(str::to_owned));
+        }
+        let (of_object, of_array) = (schema.as_object(), schema.as_array());
+        of_object
+            .into_iter()
+            .flat_map(serde_json::Map::values)
+            .chain(of_array.into_iter().flatten())
+            .for_each(|part| tagged(part, names));
+    }
+    let mut names = Vec::new();
+    tagged(document, &mut names);
+    for name in names {
+        if let Some(keys) = document["$defs"][&name].as_object_mut() {
             keys.remove("unevaluatedProperties");
         }
     }
