@@ -124,8 +124,7 @@ fn toml() -> impl Strategy<Value = String> {
         let on_wheels = ground == 0 && points && degrees;
         let kept = |key: &Key| match (key.table, key.name) {
             _ if in_space && is_off_a_mesh(key) => false,
-            ("drive", "idle_power_w") => false,
-            ("drive", _) => on_wheels,
+            ("drive", name) => on_wheels && name != "idle_power_w",
             ("search", "risk") | ("contact", _) if on_wheels => false,
             ("search", "planner" | "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => in_space,
             ("terrain", "dem") => ground == 1,
