@@ -30,7 +30,7 @@ use crate::quantity::MapPoint;
 /// Rounding of times, s: a path that is better by less is not better.
 const SAME_S: f64 = 1e-12;
 
-/// The fastest path over the boxes as drawn; `None`: there is none.
+/// The fastest path over the boxes as drawn; `None`: no path exists.
 ///
 /// # Errors
 /// A jumper that weakens.

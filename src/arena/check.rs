@@ -20,7 +20,7 @@ pub struct CheckedPath {
     pub jumps: usize,
 }
 
-/// Why a path is none.
+/// Why a path does not hold.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PathFault {

@@ -44,7 +44,7 @@ impl Flight {
         2.0 * self.along_m_s * self.up_m_s / self.gravity_m_s2
     }
 
-    /// The highest box on which it lands so far past the edge, m; below 0 if there is none.
+    /// The highest box on which it lands so far past the edge, m; below 0 if it lands on no box.
     ///
     /// The flight is over the height `h` for a length of `2 v sqrt(2 (H - h) / g)`, with `v` the speed along the floor, and that must be the distance
     /// `d` past the edge at least:

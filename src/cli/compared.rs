@@ -17,7 +17,8 @@ use super::{
     effects::Purpose,
     interrupt,
     load::{
-        EndOptions, Loaded, MeshPlanInput, comparison_document, is_over_mesh, load_mesh_scenario, load_scenario, relative_name,
+        EndOptions, Loaded, MeshPlanInput, comparison_document, drives, is_over_mesh, load_mesh_scenario, load_scenario,
+        relative_name,
     },
     not_for_travel, not_on_mesh, output,
     progress::Progress,
@@ -81,7 +82,7 @@ pub(crate) fn compare_all(args: &CompareArgs) -> Result<AnyComparison, Failure> 
     let over_mesh = args.scenarios.first().is_some_and(|file| is_over_mesh(file, &common(args)).unwrap_or(false));
     if !over_mesh {
         args.view.without_mesh()?;
-        if args.scenarios.first().is_some_and(|file| drives(file, args)) {
+        if args.scenarios.first().is_some_and(|file| drives(file, &common(args))) {
             not_for_travel::refuse(&[
                 ("--prove", args.prove.prove, "bounds the hops along a profile"),
                 ("--plot", args.plot.is_some(), "draws hops over one another (chta plan --plot draws each mission)"),
@@ -146,12 +147,6 @@ fn compared(file: &Path, args: &CompareArgs) -> Result<(Loaded, Compared), Failu
     let planned = plan(&loaded.case, options, &Progress::new(args.quiet))?;
     output::warn_all(args.quiet, &planned.warnings);
     Ok((loaded, Compared::of(planned, relative_name(file), &file.display().to_string())))
-}
-
-/// Whether a scenario drives; one that cannot be read is reported when it is planned.
-fn drives(file: &Path, args: &CompareArgs) -> bool {
-    let quiet = CommonArgs::of_scenarios(&args.set, args.accept_map_scale, args.input_max_gib, true);
-    load_scenario(file, &quiet, Purpose::Compare).is_ok_and(|loaded| loaded.case.scenario.drives().is_some())
 }
 
 /// Loads and plans one scenario that drives.

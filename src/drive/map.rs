@@ -123,7 +123,7 @@ impl DriveMap {
         self.costs.get(node).copied().filter(|cost| cost.is_finite())
     }
 
-    /// The least costs of all nodes, infinite where there is none.
+    /// The least costs of all nodes, infinite where no leg leads.
     pub fn costs(&self) -> &[f64] {
         &self.costs
     }
@@ -133,7 +133,7 @@ impl DriveMap {
         self.costs.iter().filter(|cost| cost.is_finite()).count()
     }
 
-    /// The nodes of the way of a node, in the order in which they are driven; `None` where there is none.
+    /// The nodes of the way of a node, in the order in which they are driven; `None` where no leg leads.
     pub fn way(&self, node: usize) -> Option<Vec<usize>> {
         self.cost(node)?;
         let sign = self.sense.sign();
@@ -171,7 +171,7 @@ pub struct DriveWay {
 }
 
 /// The way of least cost from one node to another, by A* search: the bound on what is left is the straight distance on the map at the least cost
-/// of a metre ([`DriveMap`] gives the same cost). `None` where there is none over these nodes and legs. Where turns have a price, the map is
+/// of a metre ([`DriveMap`] gives the same cost). `None` where no way exists over these nodes and legs. Where turns have a price, the map is
 /// searched instead.
 ///
 /// # Errors

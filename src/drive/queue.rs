@@ -41,7 +41,7 @@ impl Buckets {
     }
 
     /// Takes all states of the next bucket into `taken`, which it empties first, with the least key that the bucket may hold; `None` if
-    /// there are none left.
+    /// no more are left.
     ///
     /// `key` gives the present key of a state, and `None` for one that is done and need not be queued any more.
     #[expect(clippy::cast_precision_loss, reason = "buckets are counted far below 2^53")]

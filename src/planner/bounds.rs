@@ -3,6 +3,7 @@
 use super::{Amount, Amounts};
 use crate::{
     ballistics::{LineOfSight, PathBounds},
+    ground::{DemGround, Surface},
     world::HopperLimits,
 };
 
@@ -34,6 +35,14 @@ impl LeastAmounts {
         let [takeoff_m_s, landing_m_s] = [takeoff_m_s, landing_m_s.min(fallen_m_s)].map(|speed| speed * (1.0 + 1e-8));
         let hops = takeoff_m_s > 0.0 && landing_m_s > 0.0;
         Self { bounds: hops.then(|| PathBounds::new(takeoff_m_s, landing_m_s, gravity_m_s2)), gravity_m_s2, limits: *limits }
+    }
+
+    /// Those of the hops over a DEM.
+    pub(crate) fn over_dem(ground: &DemGround) -> Self {
+        let limits = ground.hopper().limits();
+        let (low_m, high_m) = ground.terrain().dem().elevation_range_m();
+        let landing_m_s = if limits.landing.brakes() { f64::INFINITY } else { limits.landing_speed_max_m_s };
+        Self::new(limits, ground.gravity_m_s2(), (limits.takeoff_speed_max_m_s, landing_m_s), high_m - low_m)
     }
 
     /// The bounds for a way that is so long horizontally and climbs so far, m.

@@ -149,14 +149,9 @@ impl SurfaceNodes {
     }
 
     /// All nodes in a square about a position, those of the lattice first.
-    pub(super) fn about(&self, at: MapPoint, distance_m: f64) -> impl Iterator<Item = SurfaceNode> + '_ {
+    pub(crate) fn about(&self, at: MapPoint, distance_m: f64) -> impl Iterator<Item = SurfaceNode> + '_ {
         let of_lattice = self.lattice.about(at, distance_m).map(|node| SurfaceNode::of_lattice(&self.lattice, node));
         of_lattice.chain(self.places_about(at, distance_m))
-    }
-
-    /// All nodes in a square about a position.
-    pub(crate) fn near(&self, at: MapPoint, distance_m: f64) -> impl Iterator<Item = SurfaceNode> + '_ {
-        self.about(at, distance_m)
     }
 
     /// A distance that no hop over a ground exceeds, m.

@@ -95,16 +95,11 @@ impl<'a> LegOffers<'a> {
         errors: Option<(&Uncertainty, &DemGround)>,
     ) -> Self {
         let ground = surface.ground;
-        let limits = ground.hopper().limits();
         let judge =
             |choice| errors.map(|(errors, flown_over)| MapJudge::new(flown_over, errors, choice).planned_within(ground.envelope()));
         // Flown draws of every pair would take minutes: the most reliable command of a hop is not searched for.
         let commands = offered.choices(takeoff, false).into_iter().map(|choice| (choice, judge(choice))).collect();
-        let (low_m, high_m) = ground.terrain().dem().elevation_range_m();
-        let landing_m_s = if limits.landing.brakes() { f64::INFINITY } else { limits.landing_speed_max_m_s };
-        let speeds_m_s = (limits.takeoff_speed_max_m_s, landing_m_s);
-        let least = LeastAmounts::new(limits, ground.gravity_m_s2(), speeds_m_s, high_m - low_m);
-        Self { surface, settling, commands, least }
+        Self { surface, settling, commands, least: LeastAmounts::over_dem(ground) }
     }
 
     /// Gives a hop once for each of its distinct commands: the command's number, and what the hop takes with it.

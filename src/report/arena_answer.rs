@@ -22,7 +22,7 @@ pub struct ArenaAnswer {
     pub nodes: Option<u64>,
     /// Whether a path was found.
     pub found: bool,
-    /// Whether it is proved that there is none, whatever the planner.
+    /// Whether it is proved that no path exists, whatever the planner.
     pub proved_unreachable: bool,
     /// The keys of which each one alone, if it were lifted, gives a path; empty if a path was found.
     pub stopped_by: Vec<String>,
@@ -42,7 +42,7 @@ pub struct ArenaAnswer {
     pub turning_deg: Option<f64>,
     /// Its energy, J; null without a path, and where no key gives energy a price.
     pub energy_j: Option<f64>,
-    /// The time of the same planner's path without jumps, s; null if there is none, or if jumps were not allowed anyway.
+    /// The time of the same planner's path without jumps, s; null without such a path, or if jumps were not allowed anyway.
     pub without_jumps_s: Option<f64>,
     /// The flight of every jump; null where jumps are rules.
     pub flight: Option<ArenaFlightRecord>,
@@ -61,7 +61,7 @@ pub struct ArenaFlightRecord {
     pub range_m: f64,
     /// What the landing keeps from the edge, m.
     pub landing_past_edge_m: f64,
-    /// The highest box, over the take-off, on which it lands so far past the edge, m; below 0 if there is none.
+    /// The highest box, over the take-off, on which it lands so far past the edge, m; below 0 if it lands on no box.
     pub highest_box_m: f64,
     /// The boxes, counted from 1, that are higher than this over the floor.
     pub boxes_too_high: Vec<u64>,
@@ -158,7 +158,7 @@ fn no_path(sheet: &mut Sheet, answer: &ArenaAnswer, by: &str) {
     if answer.proved_unreachable {
         sheet.line(format_args!("no path{with}, proved over the boxes as drawn"));
     } else {
-        sheet.line(format_args!("no path{with} {by}; this does not prove that there is none"));
+        sheet.line(format_args!("no path{with} {by}; this does not prove that no path exists"));
         if let Some(bound_s) = answer.lower_bound_s {
             let what = if answer.lower_bound_is_exact { "a path over the boxes as drawn takes" } else { "no path takes less than" };
             sheet.line(format_args!("{what} {bound_s:.4} s"));

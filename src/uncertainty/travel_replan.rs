@@ -18,14 +18,21 @@ const TOO_NEAR_SPACINGS: f64 = 0.3;
 #[derive(Clone, Debug)]
 pub struct TravelToGo {
     /// The nodes, the goal among their single places.
-    pub nodes: SurfaceNodes,
+    nodes: SurfaceNodes,
     /// The totals from every node to the goal.
-    pub field: TravelField,
+    field: TravelField,
     /// Whether it drives, hops or does both.
-    pub travel: Travel,
+    travel: Travel,
+    /// What every hop takes at least.
+    least: LeastAmounts,
 }
 
 impl TravelToGo {
+    /// The totals of a field over these nodes of a ground, by these means.
+    pub fn new(ground: &DemGround, nodes: SurfaceNodes, field: TravelField, travel: Travel) -> Self {
+        Self { nodes, field, travel, least: LeastAmounts::over_dem(ground) }
+    }
+
     /// The next move from where the robot believes to be: a drive to a node nearby or a hop, by which the first amount of the field is least
     /// to the goal; `None` if no move leads on.
     pub(super) fn next(
@@ -70,7 +77,7 @@ impl TravelToGo {
         first: Amount,
     ) -> impl Iterator<Item = (MapPosition, f64)> + 'n {
         let known = move |node: SurfaceNode| Some((self.nodes.position(ground, node)?, self.field.total(node, first)?));
-        self.nodes.near(at.at, near_m).filter_map(known)
+        self.nodes.about(at.at, near_m).filter_map(known)
     }
 
     /// The hop by which least is left, of those that take less than `least` in all.
@@ -84,15 +91,10 @@ impl TravelToGo {
         let first = self.field.amounts()[0];
         let limits = *ground.hopper().limits();
         let reach_m = SurfaceNodes::reach_m(ground);
-        let bounds = {
-            let (low_m, high_m) = ground.terrain().dem().elevation_range_m();
-            let landing_m_s = if limits.landing.brakes() { f64::INFINITY } else { limits.landing_speed_max_m_s };
-            LeastAmounts::new(&limits, ground.gravity_m_s2(), (limits.takeoff_speed_max_m_s, landing_m_s), high_m - low_m)
-        };
         let at_least = |(to, left): (MapPosition, f64)| {
             let run_m = libm::hypot(to.at.x - believed.at.x, to.at.y - believed.at.y);
             let sight = (run_m > 0.0).then(|| LineOfSight::new(run_m, to.z_m - believed.z_m))?;
-            Some((left + bounds.of_hop(sight).of(first), to, left))
+            Some((left + self.least.of_hop(sight).of(first), to, left))
         };
         let candidates = self.about(ground, believed, reach_m, first).filter_map(at_least);
         let mut candidates: Vec<_> = candidates.filter(|(total, ..)| *total < least).collect();

@@ -7,7 +7,7 @@ use super::super::{
 };
 use crate::quantity::MapPoint;
 
-/// A smaller ring is none, m.
+/// A smaller ring counts as absent, m.
 const NO_RING_M: f64 = 1e-6;
 
 /// The heights, the rings about their faces, and the limits of jumps.

@@ -135,6 +135,15 @@ impl Target {
     }
 }
 
+/// Whether a file is a scenario that drives, by its keys alone; one that cannot be read is reported when it is loaded.
+pub(crate) fn drives(target: &Path, common: &CommonArgs) -> bool {
+    let source = inputs::open(target, Role::Scenario).ok().and_then(|input| read_source(&input).ok());
+    source.is_some_and(|mut source| {
+        apply_options(&mut source.entries, common, None, EndOptions::NONE);
+        Scenario::new(source.entries).is_ok_and(|scenario| scenario.drives().is_some())
+    })
+}
+
 /// Loads a scenario or result as it stands.
 pub(crate) fn load_scenario(target: &Path, common: &CommonArgs, purpose: Purpose) -> Result<Loaded, Failure> {
     let target = Target { input: inputs::open(target, Role::Scenario)?, kind: TargetKind::Scenario };

@@ -56,7 +56,7 @@ fn unless_cancelled<T>(error: &DriveError) -> Result<Option<T>, RouteError> {
 }
 
 /// The totals of all amounts along the quickest ways: node after node by time, over the legs that set its time. `None` if a leg takes no time
-/// beside the time before it, so that this order is none.
+/// beside the time before it, so that this is no order of travel.
 fn totals(
     edges: &DriveEdges<'_>,
     (map, ends): (&DriveMap, &[usize]),

@@ -80,12 +80,10 @@ pub struct Mission {
 }
 
 impl Mission {
-    /// The bytes that the states of a search take, before labels.
+    /// The bytes that the states of a search take, before its labels: with turning a node has as many as neighbours, and two more.
     pub const fn bytes(nodes: &SurfaceNodes, rover: &Rover, travel: Travel) -> u64 {
         let turns = travel.drives() && rover.limits().turn_s_per_deg > 0.0;
-        let layers = TravelLegs::layers(turns, rover.limits().neighbours.count());
-        // The first label of each state, and one label in all likelihood.
-        (layers as u64) * (nodes.count() as u64) * 4
+        4 * TravelLegs::layers(turns, rover.limits().neighbours.count()) as u64 * nodes.count() as u64
     }
 }
 

@@ -5,8 +5,8 @@ use super::super::{
     free_route::left_out,
     map::{MapStudyError, PreparedMap},
 };
+use super::plan::of_wheels;
 use crate::{
-    graph::Effort,
     ground::NodeLattice,
     planner::{
         Amount, LabelCap, MissionQuestion, NodesPerPost, Objective, RouteQuestion, SurfaceLattice, SurfaceNode, SurfaceNodes,
@@ -16,6 +16,7 @@ use crate::{
     reach::map::Post,
     report::{DeratingRecord, TravelGoalRecord, TravelMapAnswer, TravelReachRecord, TravelSumsRecord},
     scenario::{DriveKeys, Scenario},
+    terrain::Dem,
 };
 
 /// A map of missions, with everything that its views need.
@@ -84,7 +85,7 @@ pub fn travel_map(
     let back = returns.then(|| field(keys.travel, Toward::Start)).transpose()?;
     let mut map = TravelMap {
         answer: answer(prepared, (scenario, keys), &objective),
-        warnings: warnings(scenario, &objective),
+        warnings: warnings(scenario, prepared.dem(), &objective),
         lattice: prepared.lattice,
         nodes,
         fields,
@@ -95,13 +96,11 @@ pub fn travel_map(
 }
 
 /// What is to be known about the answer.
-fn warnings(scenario: &Scenario, objective: &Objective) -> Vec<String> {
+fn warnings(scenario: &Scenario, dem: &Dem, objective: &Objective) -> Vec<String> {
     let mut warnings = left_out(scenario);
+    warnings.extend(of_wheels(scenario, dem));
     if objective.amounts().contains(&Amount::Risk) {
         warnings.push("risk counts for drive legs alone on a map of missions: hops are judged by plan and simulate".to_owned());
-    }
-    if scenario.search.effort != Effort::default() && scenario.objective.is_some() {
-        warnings.push("search.effort has no effect beside an objective".to_owned());
     }
     warnings
 }
@@ -203,7 +202,7 @@ impl TravelMap {
         }
     }
 
-    /// The total of an amount along the best mission to every node, row after row; NaN where there is none.
+    /// The total of an amount along the best mission to every node, row after row; NaN where no mission leads.
     ///
     /// # Returns
     /// `None` for an amount that the field does not know.

@@ -3,7 +3,7 @@
 use super::super::{
     Case, JourneyError,
     free_route::left_out,
-    nodes::{coarse_nodes, level_hop_m},
+    nodes::{coarse_nodes, level_hop_m, post_spacing_m},
 };
 use super::{
     search::TravelSearch,
@@ -22,6 +22,9 @@ use crate::{
         PropellantShortage, TotalsRecord, TravelAlternativeRecord, TravelAnswer, TravelFrontRecord, TravelLegRecord,
         TravelSearchRecord, TravelStopRecord, TravelSumsRecord, TravelTotalsRecord, hops_of,
     },
+    scenario::Scenario,
+    terrain::Dem,
+    world::FrictionCone,
 };
 
 /// What is wanted beside the path.
@@ -92,6 +95,30 @@ impl TravelPlanned {
     }
 }
 
+/// What the wheels of a scenario do not see of a DEM, or of its friction.
+pub(super) fn of_wheels(scenario: &Scenario, dem: &Dem) -> Vec<String> {
+    let Some(keys) = scenario.drives() else { return Vec::new() };
+    let (limits, post_m) = (keys.rover.limits(), post_spacing_m(dem));
+    let mut warnings = Vec::new();
+    if let Some(wheelbase_m) = limits.wheelbase_m.filter(|wheelbase_m| post_m > *wheelbase_m) {
+        warnings.push(format!(
+            "the posts of the dem are {post_m} m apart, more than drive.wheelbase_m of {wheelbase_m} m: steps and rocks between posts are unknown, \
+             and no limit of [drive] sees them"
+        ));
+    }
+    let steepest = keys.rover.slopes().into_iter().fold(0.0, f64::max);
+    let friction = scenario.surface.constant_friction().map(FrictionCone::coefficient);
+    if let Some(friction) = friction.filter(|friction| steepest > *friction) {
+        warnings.push(format!(
+            "wheels may drive slopes of up to {:.1} deg by the limits of [drive], and friction of {friction} holds up to {:.1} deg: they are judged \
+             by these limits and drive.slip, not by friction",
+            Angle::from_slope(steepest).degrees(),
+            Angle::from_slope(friction).degrees()
+        ));
+    }
+    warnings
+}
+
 /// What is to be known about the answer.
 fn warnings(search: &TravelSearch, mission: &Mission) -> Vec<String> {
     let scenario = search.scenario();
@@ -100,14 +127,7 @@ fn warnings(search: &TravelSearch, mission: &Mission) -> Vec<String> {
     if search.keys.travel.hops() {
         warnings.extend(coarse_nodes(level_hop_m(&search.free.ground), "the mission", spacing_m));
     }
-    let dem = search.free.ground.terrain().dem().georeference();
-    let post_m = dem.dx_m().max(dem.dy_m());
-    if let Some(wheelbase_m) = search.keys.rover.limits().wheelbase_m.filter(|wheelbase_m| post_m > *wheelbase_m) {
-        warnings.push(format!(
-            "the posts of the dem are {post_m} m apart, more than drive.wheelbase_m of {wheelbase_m} m: steps and rocks between posts are unknown, \
-             and no limit of [drive] sees them"
-        ));
-    }
+    warnings.extend(of_wheels(scenario, search.free.ground.terrain().dem()));
     if scenario.uncertainty.is_some() && search.keys.travel.hops() && !search.free.objective.amounts().contains(&Amount::Risk) {
         warnings.push(format!(
             "the mission is planned by the objective {}, not by reliability: hops of least amounts stand on the edge of their limits; simulate \

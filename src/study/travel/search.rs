@@ -1,6 +1,6 @@
 //! The search for a mission of a case.
 
-use super::super::{Case, CaseError, JourneyError, SimulateError, dem_ground::dem_ground, free_route::FreeSearch};
+use super::super::{Case, CaseError, FreeRouteError, JourneyError, dem_ground::dem_ground, free_route::FreeSearch};
 use crate::{
     ground::DemGround,
     planner::{
@@ -26,6 +26,10 @@ impl TravelSearch {
     pub(super) fn of(case: &Case) -> Result<Self, JourneyError> {
         let keys = case.scenario.drive.clone().ok_or(CaseError::DriveOnly)?;
         let free = FreeSearch::of(case)?;
+        let needed_bytes = free.ground.terrain().dem().elevations_bytes() + Mission::bytes(&free.nodes, &keys.rover, keys.travel);
+        if let Some(allowed_bytes) = case.memory_max_bytes.filter(|allowed_bytes| needed_bytes > *allowed_bytes) {
+            return Err(FreeRouteError::TooMuchMemory { needed_bytes, allowed_bytes, nodes: free.nodes.count() as u64 }.into());
+        }
         let whole = dem_ground(&free.case).map_err(Box::new)?;
         Ok(Self { free, keys, whole })
     }
@@ -67,7 +71,7 @@ impl TravelSearch {
         let goal = self.free.nodes.place(self.free.goal.goal);
         let asked = (&question, self.free.goal.takeoff, Toward::Start);
         let field = travel_field((&self.free.ground, &self.free.nodes), goal.as_slice(), asked, progress)?;
-        Ok(TravelToGo { field, travel: self.keys.travel, nodes: self.free.nodes })
+        Ok(TravelToGo::new(&self.free.ground, self.free.nodes, field, self.keys.travel))
     }
 
     /// The front of up to so many hops against an amount.
@@ -79,11 +83,5 @@ impl TravelSearch {
         let budgets = self.free.budgets.with(Amount::Hops, hops_max as f64).unwrap_or(self.free.budgets);
         question.route.budgets = &budgets;
         Ok(front_of_missions(&self.free.ground, &self.free.nodes, &self.free.goal, (amount, &question), progress)?)
-    }
-}
-
-impl From<SimulateError> for JourneyError {
-    fn from(error: SimulateError) -> Self {
-        Self::Trials(Box::new(error))
     }
 }

@@ -1,7 +1,7 @@
 //! The legs of a mission with all their numbers, each driven or flown again by the independent checker.
 
 use super::super::{
-    Defect, FreeRouteError, JourneyError,
+    FreeRouteError, JourneyError,
     free_route::{Laid, Unrolled},
 };
 use super::search::TravelSearch;
@@ -163,10 +163,4 @@ fn sums(search: &TravelSearch, stretches: &[Stretch]) -> [f64; 3] {
         }
     }
     sums
-}
-
-impl From<Defect> for JourneyError {
-    fn from(defect: Defect) -> Self {
-        FreeRouteError::from(defect).into()
-    }
 }
