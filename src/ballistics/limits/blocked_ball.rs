@@ -8,7 +8,7 @@
 //!        '-------'                     r sqrt(1 + 1 / cos^2 22.5 deg) = 1.474 r.
 //! ```
 
-use super::{ClearanceProfile, blocked_lofts};
+use super::{ClearanceProfile, convex_hull::blocked_by_hull};
 use crate::{
     ballistics::LineOfSight,
     quantity::{ChainPoint, SlopeInterval},
@@ -60,51 +60,5 @@ pub fn blocked_lofts_of_ball(
             count += 1;
         }
     }
-    let mut border = [ChainPoint::new(0.0, 0.0); 8 * BALL_CORNERS + 1];
-    let border = convex_hull(&mut points[..count], &mut border);
-    let mut blocked = SlopeInterval::EMPTY;
-    for (i, from) in border.iter().enumerate() {
-        let to = border[(i + 1) % border.len()];
-        let ends = if from.x_m <= to.x_m { [*from, to] } else { [to, *from] };
-        if let Some(part) = within_the_hop(sight.run_m(), ends) {
-            let lofts = blocked_lofts(sight.run_m(), part, clearance);
-            blocked = SlopeInterval { lower: blocked.lower.min(lofts.lower), upper: blocked.upper.max(lofts.upper) };
-        }
-    }
-    blocked
-}
-
-/// The part of a segment between take-off and landing.
-fn within_the_hop(run_m: f64, [from, to]: [ChainPoint; 2]) -> Option<[ChainPoint; 2]> {
-    if to.x_m <= 0.0 || from.x_m >= run_m {
-        return None;
-    }
-    let at = |x_m: f64| ChainPoint::new(x_m, from.z_m + (to.z_m - from.z_m) * ((x_m - from.x_m) / (to.x_m - from.x_m)));
-    Some([if from.x_m < 0.0 { at(0.0) } else { from }, if to.x_m > run_m { at(run_m) } else { to }])
-}
-
-/// The corners of the convex hull of points, in order around it.
-///
-/// Source: A. M. Andrew 1979, *Another efficient algorithm for convex hulls in two dimensions*.
-fn convex_hull<'a>(points: &mut [ChainPoint], hull: &'a mut [ChainPoint]) -> &'a [ChainPoint] {
-    points.sort_unstable_by(|a, b| a.x_m.total_cmp(&b.x_m).then(a.z_m.total_cmp(&b.z_m)));
-    let turns_left =
-        |a: ChainPoint, b: ChainPoint, c: ChainPoint| (b.x_m - a.x_m) * (c.z_m - a.z_m) - (b.z_m - a.z_m) * (c.x_m - a.x_m) > 0.0;
-    let mut count = 0;
-    let mut add = |point: ChainPoint, count: &mut usize, least: usize| {
-        while *count >= least + 2 && !turns_left(hull[*count - 2], hull[*count - 1], point) {
-            *count -= 1;
-        }
-        hull[*count] = point;
-        *count += 1;
-    };
-    for point in points.iter() {
-        add(*point, &mut count, 0);
-    }
-    let lower = count - 1;
-    for point in points.iter().rev().skip(1) {
-        add(*point, &mut count, lower);
-    }
-    // The first point came twice.
-    &hull[..count.saturating_sub(1).max(1)]
+    blocked_by_hull(sight.run_m(), [0.0, sight.run_m()], &mut points[..count], clearance)
 }

@@ -94,6 +94,19 @@ impl VerticalPlane {
         self.heading.x * away.y - self.heading.y * away.x
     }
 
+    /// A point in the frame of the plane: ahead along the heading, to the left, and up, m from the origin.
+    #[inline]
+    pub fn framed(&self, point: Point3<f64>) -> Vector3<f64> {
+        self.turned(point - self.origin)
+    }
+
+    /// A direction in the frame of the plane: ahead, to the left, and up.
+    #[inline]
+    pub fn turned(&self, direction: Vector3<f64>) -> Vector3<f64> {
+        let (east, north) = (self.heading.x, self.heading.y);
+        Vector3::new(east * direction.x + north * direction.y, east * direction.y - north * direction.x, direction.z)
+    }
+
     /// The rectangle of the plane, from the least to the greatest distance and height, in which a box meets it; `None` if they do not
     /// meet. The rectangle of the whole box, not only of the part that meets the plane.
     #[inline]
@@ -200,6 +213,19 @@ impl MeshTree {
                 None => ControlFlow::Continue(()),
             },
         )
+    }
+
+    /// Visits the triangles of the leaves whose boxes come within a distance of a vertical plane, until the visitor breaks.
+    ///
+    /// `enters` as in [`slab`](Self::slab).
+    pub fn beside(
+        &self,
+        plane: &VerticalPlane,
+        within_m: f64,
+        mut enters: impl FnMut([ChainPoint; 2]) -> bool,
+        visit: impl FnMut(FacetId, &[Point3<f64>; 3]) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        self.walk(|bounds| plane.across(bounds, within_m + self.resolution_m).is_some_and(&mut enters), visit)
     }
 
     /// The bodies of the mesh.
