@@ -4,9 +4,9 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Point3;
 
-use super::{ContactSampler, DrawnContacts, Roadmap, RoadmapQuestion, RoadmapRoute, legs::least_amounts};
+use super::{DrawnContacts, Roadmap, RoadmapGround, RoadmapQuestion, RoadmapRoute, RoadmapSampler};
 use crate::{
-    ground::{MeshContact, MeshGround},
+    ground::MeshContact,
     planner::{Amounts, LeastAmounts},
     progress::{Cancelled, Progress},
 };
@@ -79,9 +79,9 @@ pub struct RoadmapRound {
 
 /// A roadmap that stopped growing, and its best path.
 #[derive(Clone, Debug)]
-pub struct GrownRoadmap {
+pub struct GrownRoadmap<N = MeshContact> {
     /// The roadmap. Contact 0 is the start, contact 1 the goal.
-    pub roadmap: Roadmap,
+    pub roadmap: Roadmap<N>,
     /// The numbers of start and goal: both 0 where they are one point.
     pub ends: (usize, usize),
     /// The best path.
@@ -100,20 +100,20 @@ pub struct GrownRoadmap {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn grow_roadmap(
-    ground: &MeshGround,
-    ends: [MeshContact; 2],
-    sampler: &mut ContactSampler<'_>,
+pub fn grow_roadmap<G: RoadmapGround>(
+    ground: &G,
+    ends: [G::Node; 2],
+    sampler: &mut dyn RoadmapSampler<G::Node>,
     question: &RoadmapQuestion<'_>,
     limits: RoadmapLimits,
     progress: &dyn Progress,
-) -> Result<GrownRoadmap, Cancelled> {
+) -> Result<GrownRoadmap<G::Node>, Cancelled> {
     let began = limits.time_max.map(|most| (Instant::now(), most));
-    let points = [ends[0].point_m(), ends[1].point_m()];
+    let points = [ground.point_m(&ends[0]), ground.point_m(&ends[1])];
     let mut grown = over_roadmap(ground, Roadmap::new(), ends, question, progress)?;
     let numbers = grown.ends;
     let is_there = numbers.0 == numbers.1;
-    let gains = Gains { least: least_amounts(ground), points };
+    let gains = Gains { least: ground.least_amounts(), points };
     let (mut weak_rounds, mut rounds) = (0, 0_u32);
     grown.end = loop {
         if is_there {
@@ -130,13 +130,15 @@ pub fn grow_roadmap(
         if wanted <= count {
             break RoadmapEnd::Contacts;
         }
-        let Some(wanted) = in_time(began, &grown.roadmap, wanted) else { break RoadmapEnd::Time };
+        let Some(wanted) = in_time(began, (grown.roadmap.contact_count(), grown.roadmap.pairs_tested()), wanted) else {
+            break RoadmapEnd::Time;
+        };
         let before = grown.route.clone();
         let is_useful = |point: &Point3<f64>| gains.are_possible(point, &before, question);
         let added = wanted - count;
         let mut contacts = Vec::with_capacity(added);
         if let Some(path) = before.path.as_ref().filter(|_| refines) {
-            let about: Vec<_> = path.contacts.iter().map(|node| grown.roadmap.contact(*node).point_m()).collect();
+            let about: Vec<_> = path.contacts.iter().map(|node| ground.point_m(grown.roadmap.contact(*node))).collect();
             // Wide for another way, narrow for the same one.
             let share = if rounds.is_multiple_of(2) { 0.3 } else { 0.08 };
             contacts = sampler.about(&about, share * mean_length_m(&about), added / 2, &is_useful);
@@ -168,13 +170,13 @@ pub fn grow_roadmap(
 ///
 /// # Complexity
 /// Every hop between the two and a contact of the roadmap is tested, and none between two of its own.
-pub fn over_roadmap(
-    ground: &MeshGround,
-    mut roadmap: Roadmap,
-    ends: [MeshContact; 2],
+pub fn over_roadmap<G: RoadmapGround>(
+    ground: &G,
+    mut roadmap: Roadmap<G::Node>,
+    ends: [G::Node; 2],
     question: &RoadmapQuestion<'_>,
     progress: &dyn Progress,
-) -> Result<GrownRoadmap, Cancelled> {
+) -> Result<GrownRoadmap<G::Node>, Cancelled> {
     let numbers = numbered(ground, &ends, roadmap.contact_count());
     roadmap.extend(ground, ends.into(), progress)?;
     let route = roadmap.route(ground, numbers, question)?;
@@ -191,11 +193,11 @@ pub fn over_roadmap(
 }
 
 /// The numbers of start and goal where they are the next contacts of a roadmap: the same one where they are one place.
-pub(super) fn numbered(ground: &MeshGround, [start, goal]: &[MeshContact; 2], first: usize) -> (usize, usize) {
+pub(super) fn numbered<G: RoadmapGround>(ground: &G, [start, goal]: &[G::Node; 2], first: usize) -> (usize, usize) {
     (first, first + usize::from(!ground.are_one_place([start, goal])))
 }
 
-impl GrownRoadmap {
+impl<N: Clone + Send + Sync> GrownRoadmap<N> {
     pub(super) fn record(&mut self) {
         self.history.push(RoadmapRound {
             contacts: self.roadmap.contact_count(),
@@ -212,12 +214,11 @@ impl GrownRoadmap {
     clippy::cast_sign_loss,
     reason = "an estimate from counts far below 2^53"
 )]
-fn in_time(began: Option<(Instant, Duration)>, roadmap: &Roadmap, wanted: usize) -> Option<usize> {
-    let (Some((began, most)), true) = (began, roadmap.contact_count() > 2) else { return Some(wanted) };
+fn in_time(began: Option<(Instant, Duration)>, (count, tested): (usize, u64), wanted: usize) -> Option<usize> {
+    let (Some((began, most)), true) = (began, count > 2) else { return Some(wanted) };
     let passed = began.elapsed();
     let left_s = most.checked_sub(passed)?.as_secs_f64();
-    let pairs = left_s * roadmap.pairs_tested() as f64 / passed.as_secs_f64().max(1e-9);
-    let count = roadmap.contact_count();
+    let pairs = left_s * tested as f64 / passed.as_secs_f64().max(1e-9);
     let most = (count as f64).mul_add(count as f64, pairs).sqrt() as usize;
     (most >= count + ROUND_LEAST.min(wanted - count)).then(|| most.min(wanted))
 }

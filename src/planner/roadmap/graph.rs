@@ -7,20 +7,21 @@ use petgraph::{
 };
 use rayon::prelude::*;
 
+use super::RoadmapGround;
 use crate::{
     ballistics::LineOfSight,
-    ground::{MeshBuffers, MeshContact, MeshGround},
+    ground::MeshContact,
     progress::{Cancelled, Detail, Meter, Progress, Stage},
     quantity::SlopeInterval,
 };
 
-/// Contacts on a mesh, and every window of every hop between two of them.
+/// Contacts on a mesh, or stances of a robot with legs, and every window of every hop between two of them.
 ///
-/// Nodes are contacts. An edge is one window of a hop, as lofts over its line of sight: a hop with several windows has as many parallel
+/// Nodes are contacts or stances. An edge is one window of a hop, as lofts over its line of sight: a hop with several windows has as many parallel
 /// edges, ascending.
-#[derive(Clone, Debug, Default)]
-pub struct Roadmap {
-    graph: DiGraph<MeshContact, SlopeInterval>,
+#[derive(Clone, Debug)]
+pub struct Roadmap<N = MeshContact> {
+    graph: DiGraph<N, SlopeInterval>,
     pairs_tested: u64,
 }
 
@@ -33,7 +34,13 @@ pub struct RoadmapHop {
     count: usize,
 }
 
-impl Roadmap {
+impl<N> Default for Roadmap<N> {
+    fn default() -> Self {
+        Self { graph: DiGraph::new(), pairs_tested: 0 }
+    }
+}
+
+impl<N: Clone + Send + Sync> Roadmap<N> {
     /// A roadmap without contacts.
     pub fn new() -> Self {
         Self::default()
@@ -41,7 +48,7 @@ impl Roadmap {
 
     /// A roadmap of contacts and windows that are known: from take-off to landing, by the numbers of the contacts. All windows of one hop
     /// stand together, ascending.
-    pub(super) fn of_parts(contacts: Vec<MeshContact>, windows: &[(u32, u32, SlopeInterval)], pairs_tested: u64) -> Self {
+    pub(super) fn of_parts(contacts: Vec<N>, windows: &[(u32, u32, SlopeInterval)], pairs_tested: u64) -> Self {
         let mut graph = DiGraph::with_capacity(contacts.len(), windows.len());
         for contact in contacts {
             graph.add_node(contact);
@@ -53,7 +60,7 @@ impl Roadmap {
     }
 
     /// The graph, for the algorithms of petgraph.
-    pub const fn graph(&self) -> &DiGraph<MeshContact, SlopeInterval> {
+    pub const fn graph(&self) -> &DiGraph<N, SlopeInterval> {
         &self.graph
     }
 
@@ -73,7 +80,7 @@ impl Roadmap {
     }
 
     /// A contact by its number.
-    pub fn contact(&self, node: usize) -> &MeshContact {
+    pub fn contact(&self, node: usize) -> &N {
         &self.graph[NodeIndex::new(node)]
     }
 
@@ -109,13 +116,18 @@ impl Roadmap {
     ///
     /// # Complexity
     /// A square root for every pair; the windows of those that the greatest speeds may span.
-    pub fn extend(&mut self, ground: &MeshGround, contacts: Vec<MeshContact>, progress: &dyn Progress) -> Result<(), Cancelled> {
+    pub fn extend<G: RoadmapGround<Node = N>>(
+        &mut self,
+        ground: &G,
+        contacts: Vec<N>,
+        progress: &dyn Progress,
+    ) -> Result<(), Cancelled> {
         let meter = Meter::new(progress, Stage::Search).after(self.pairs_tested);
         meter.report(Detail::None)?;
         let known = self.contact_count();
         let all = known + contacts.len();
         let of = |node: usize| if node < known { self.contact(node) } else { &contacts[node - known] };
-        let row = |buffers: &mut MeshBuffers, from: usize| {
+        let row = |buffers: &mut G::Buffers, from: usize| {
             let mut counter = meter.counter();
             let mut found = Vec::new();
             let landings = if from < known { known..all } else { 0..all };
@@ -127,7 +139,7 @@ impl Roadmap {
             }
             Ok(found)
         };
-        let rows = (0..all).into_par_iter().map_init(MeshBuffers::default, row);
+        let rows = (0..all).into_par_iter().map_init(G::Buffers::default, row);
         let rows: Vec<Vec<(usize, SlopeInterval)>> = rows.collect::<Result<_, Cancelled>>()?;
         meter.check()?;
         let (all, old) = (all as u64, known as u64);
@@ -146,7 +158,7 @@ impl Roadmap {
 
     /// Adds one contact and windows of hops to it and from it, by their take-offs and landings, those of one hop together and ascending;
     /// `pairs`: how many ordered pairs were tested for them.
-    pub(super) fn join(&mut self, contact: MeshContact, windows: &[(usize, usize, SlopeInterval)], pairs: u64) {
+    pub(super) fn join(&mut self, contact: N, windows: &[(usize, usize, SlopeInterval)], pairs: u64) {
         self.graph.add_node(contact);
         for (from, to, lofts) in windows {
             self.graph.add_edge(NodeIndex::new(*from), NodeIndex::new(*to), *lofts);
@@ -164,8 +176,8 @@ impl Roadmap {
     }
 
     /// The line of sight of a hop.
-    pub fn sight(&self, ground: &MeshGround, from: usize, to: usize) -> Option<LineOfSight> {
-        Some(ground.course(self.contact(from), self.contact(to))?.sight)
+    pub fn sight(&self, ground: &impl RoadmapGround<Node = N>, from: usize, to: usize) -> Option<LineOfSight> {
+        ground.sight(self.contact(from), self.contact(to))
     }
 
     /// The fewest hops from every contact to one; `None` from where it is not reached.

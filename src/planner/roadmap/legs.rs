@@ -1,18 +1,17 @@
 //! The hops of a roadmap, each with its distinct commands.
 
-use super::Roadmap;
+use super::{Roadmap, RoadmapGround};
 use crate::{
     ballistics::{Arc, TakeoffChoice},
-    ground::MeshGround,
     planner::{Amount, Amounts, LeastAmounts, LegGraph, LegVisitor, PathStep, SearchedCommands, Successor},
     progress::Cancelled,
 };
 
 /// The graph of a roadmap from a start to a goal.
 #[derive(Debug)]
-pub struct RoadmapLegs<'a> {
-    roadmap: &'a Roadmap,
-    ground: &'a MeshGround,
+pub struct RoadmapLegs<'a, G: RoadmapGround> {
+    roadmap: &'a Roadmap<G::Node>,
+    ground: &'a G,
     ends: (usize, usize),
     commands: Vec<TakeoffChoice>,
     least: LeastAmounts,
@@ -20,11 +19,11 @@ pub struct RoadmapLegs<'a> {
     hops_left: Vec<Option<u32>>,
 }
 
-impl<'a> RoadmapLegs<'a> {
+impl<'a, G: RoadmapGround> RoadmapLegs<'a, G> {
     /// The graph. `offered`: the commands of a hop, with the `takeoff` that is chosen.
     pub fn new(
-        roadmap: &'a Roadmap,
-        ground: &'a MeshGround,
+        roadmap: &'a Roadmap<G::Node>,
+        ground: &'a G,
         ends: (usize, usize),
         (offered, takeoff): (SearchedCommands, TakeoffChoice),
     ) -> Self {
@@ -33,7 +32,7 @@ impl<'a> RoadmapLegs<'a> {
             ground,
             ends,
             commands: offered.choices(takeoff, false),
-            least: least_amounts(ground),
+            least: ground.least_amounts(),
             hops_left: roadmap.hops_to(ends.1),
         }
     }
@@ -57,16 +56,7 @@ impl<'a> RoadmapLegs<'a> {
     }
 }
 
-/// Lower bounds over a mesh.
-pub(super) fn least_amounts(ground: &MeshGround) -> LeastAmounts {
-    let envelope = ground.envelope();
-    let limits = envelope.hopper().limits();
-    let bounds = ground.tree().mesh().bounds();
-    let speeds_m_s = (limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s());
-    LeastAmounts::new(limits, envelope.gravity_m_s2(), speeds_m_s, bounds.high_m - bounds.low_m)
-}
-
-impl LegGraph for RoadmapLegs<'_> {
+impl<G: RoadmapGround> LegGraph for RoadmapLegs<'_, G> {
     fn nodes(&self) -> usize {
         self.roadmap.contact_count()
     }
@@ -97,7 +87,7 @@ impl LegGraph for RoadmapLegs<'_> {
     }
 
     fn least_to_goal(&self, node: usize) -> Amounts {
-        let (here, goal) = (self.roadmap.contact(node).point_m(), self.roadmap.contact(self.ends.1).point_m());
+        let [here, goal] = [node, self.ends.1].map(|node| self.ground.point_m(self.roadmap.contact(node)));
         let away = goal - here;
         self.least.over_in(libm::hypot(away.x, away.y), away.z, self.hops_left[node].map_or(0, u64::from))
     }

@@ -14,6 +14,7 @@
 mod anytime;
 mod file;
 mod graph;
+mod ground;
 mod join;
 mod kind;
 mod legs;
@@ -24,6 +25,7 @@ mod sample;
 pub use anytime::{GAIN_MIN, GrownRoadmap, RoadmapEnd, RoadmapLimits, RoadmapRound, grow_roadmap, over_roadmap};
 pub use file::RoadmapFileError;
 pub use graph::{Roadmap, RoadmapHop};
+pub use ground::{RoadmapGround, RoadmapSampler};
 pub use join::{JoinCounts, JoinTest, PROBE_RADIUS_M, PROBE_STAND_OFF_M, PROBE_STEP_M, SAMPLED_SHARES};
 pub use kind::RoadmapPlanner;
 pub use legs::RoadmapLegs;

@@ -2,17 +2,15 @@
 
 use nalgebra::Point3;
 
-use super::{Roadmap, RoadmapLegs};
+use super::{Roadmap, RoadmapGround, RoadmapLegs};
 use crate::{
     ballistics::{Arc, TakeoffChoice},
     graph::RefusalCounts,
-    ground::{MeshConflict, MeshGround},
     planner::{
         Amount, Amounts, Budgets, FoundPath, LabelCap, Objective, SearchedCommands, UnmetBudget, front,
         search::{search, without_budgets},
     },
     progress::{Cancelled, Meter, Progress, Stage},
-    world::Limit,
 };
 
 /// What a path of a roadmap is searched for.
@@ -55,14 +53,14 @@ pub struct RoadmapRoute {
     pub capped: bool,
 }
 
-impl Roadmap {
+impl<N: Clone + Send + Sync> Roadmap<N> {
     /// The best path from a start to a goal by an objective, within budgets.
     ///
     /// # Errors
     /// [`Cancelled`].
     pub fn route(
         &self,
-        ground: &MeshGround,
+        ground: &impl RoadmapGround<Node = N>,
         ends: (usize, usize),
         question: &RoadmapQuestion<'_>,
     ) -> Result<RoadmapRoute, Cancelled> {
@@ -87,7 +85,7 @@ impl Roadmap {
     /// [`Cancelled`].
     pub fn front(
         &self,
-        ground: &MeshGround,
+        ground: &impl RoadmapGround<Node = N>,
         ends: (usize, usize),
         (amount, question): (Amount, &RoadmapQuestion<'_>),
     ) -> Result<(Vec<RoadmapPath>, bool), Cancelled> {
@@ -106,13 +104,13 @@ impl Roadmap {
     /// [`JUDGED_MAX`](RoadmapGap::JUDGED_MAX) pairs.
     pub fn gap(
         &self,
-        ground: &MeshGround,
+        ground: &impl RoadmapGround<Node = N>,
         (start, goal): (usize, usize),
         progress: &dyn Progress,
     ) -> Result<RoadmapGap, Cancelled> {
         let meter = Meter::new(progress, Stage::Search).after(self.pairs_tested());
         let (reached, leading) = (numbers(&self.hops_out_of(start)), numbers(&self.hops_to(goal)));
-        let point = |node: usize| self.contact(node).point_m();
+        let point = |node: usize| ground.point_m(self.contact(node));
         let nearest = |of: &[usize], to: usize| {
             let away = |node: &usize| (point(*node) - point(to)).norm_squared();
             of.iter().copied().min_by(|a, b| away(a).total_cmp(&away(b)))
@@ -154,13 +152,11 @@ impl Roadmap {
                     continue;
                 }
                 gap.judged += 1;
-                match ground.takeoff_set(self.contact(from), self.contact(to)) {
-                    None => gap.vertical += 1,
-                    Some(set) => match set.conflict() {
-                        Some(MeshConflict::Limits(conflict)) => gap.refusals.count(conflict.counted_under()),
-                        Some(MeshConflict::Terrain { .. }) => gap.refusals.count(Limit::Terrain),
-                        None => gap.free += 1,
-                    },
+                let [takeoff, landing] = [from, to].map(|node| self.contact(node));
+                match ground.refused_by(takeoff, landing) {
+                    Some(limit) => gap.refusals.count(limit),
+                    None if ground.sight(takeoff, landing).is_none() => gap.vertical += 1,
+                    None => gap.free += 1,
                 }
             }
         }
@@ -204,7 +200,7 @@ fn numbers(levels: &[Option<u32>]) -> Vec<usize> {
 }
 
 /// The contacts, arcs and totals of a path.
-fn path_of(legs: &RoadmapLegs<'_>, path: &FoundPath) -> RoadmapPath {
+fn path_of<G: RoadmapGround>(legs: &RoadmapLegs<'_, G>, path: &FoundPath) -> RoadmapPath {
     let landings = path.steps.iter().map(|step| step.to);
     RoadmapPath {
         contacts: std::iter::once(legs.ends().0).chain(landings).collect(),

@@ -4,6 +4,7 @@ use nalgebra::{Point3, Vector3};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use rayon::prelude::*;
 
+use super::RoadmapSampler;
 use crate::{
     ground::{MeshContact, MeshGround, NoMeshContact},
     quantity::FacetId,
@@ -298,4 +299,24 @@ impl<'g> ContactSampler<'g> {
 #[expect(clippy::cast_possible_truncation, reason = "the product of a 64-bit number and a count, shifted, is below the count")]
 fn below(source: &mut ChaCha8Rng, count: usize) -> usize {
     ((u128::from(source.random::<u64>()) * count as u128) >> 64) as usize
+}
+
+impl RoadmapSampler<MeshContact> for ContactSampler<'_> {
+    fn all_over(&mut self, count: usize, is_useful: &(dyn Fn(&Point3<f64>) -> bool + Sync)) -> Vec<MeshContact> {
+        self.all_over(count, is_useful)
+    }
+
+    fn about(
+        &mut self,
+        points: &[Point3<f64>],
+        radius_m: f64,
+        count: usize,
+        is_useful: &(dyn Fn(&Point3<f64>) -> bool + Sync),
+    ) -> Vec<MeshContact> {
+        self.about(points, radius_m, count, is_useful)
+    }
+
+    fn drawn(&self) -> DrawnContacts {
+        self.drawn()
+    }
 }
