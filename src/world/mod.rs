@@ -1,4 +1,4 @@
-//! The body hopped on, the hopper, and the grip of the ground.
+//! The body hopped on, the hopper or the robot with legs, and the grip of the ground.
 
 mod body;
 mod derating;
@@ -6,6 +6,7 @@ mod face_group;
 mod friction_cone;
 mod gravity;
 mod hopper;
+mod legs;
 mod limit;
 mod prepared_cone;
 mod propulsion;
@@ -22,6 +23,10 @@ pub use face_group::{FaceGroup, FaceGroups};
 pub use friction_cone::{FrictionCone, InvalidFriction};
 pub use gravity::{Gravity, InvalidGravity, InvalidRadius};
 pub use hopper::{ClearanceRule, Hopper, HopperLimits, HopperProblem, InvalidHopper};
+pub use legs::{
+    ConvexWorkspace, HalfSpace, InvalidHull, InvalidRobot, Limb, Robot, RobotDescription, RobotPart, RobotProblem, Shell,
+    TrunkBounds, TrunkBox, Workspace,
+};
 pub use limit::{Limit, SPEED_TOLERANCE, tolerant_speed_m_s};
 pub use prepared_cone::PreparedCone;
 pub use propulsion::LandingMode;
