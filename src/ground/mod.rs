@@ -22,6 +22,7 @@ mod hop_reach;
 mod landing_share;
 mod mesh;
 mod posts;
+mod stance;
 mod surface;
 mod sweep;
 
@@ -40,6 +41,7 @@ pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostHopsSize, Post
 pub(crate) use posts::{Offset, OverlayTable};
 #[cfg(test)]
 pub(crate) use posts::{OffsetTable, Spacing};
+pub use stance::{Foothold, LimbOutcome, NoFriction, NoStance, Pose, Stance, StanceBuffers, StanceGround, StandsUp, TrunkHit};
 pub use surface::{
     Around, ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Profiles, Side, Surface, TakeoffWindows, Triangulated,
     Windows,

@@ -30,6 +30,7 @@ mod objective;
 pub mod roadmap;
 mod route_gap;
 mod search;
+mod stances;
 mod surface_hops;
 mod surface_legs;
 mod travel;
@@ -47,6 +48,7 @@ pub use nodes::{SurfaceNode, SurfaceNodes, TooManyNodes};
 pub use objective::{Objective, ObjectiveProblem};
 pub use route_gap::RouteGap;
 pub use search::{FoundPath, LabelCap, LegGraph, LegVisitor, PathStep, SearchResult, Successor, UnmetBudget, search};
+pub use stances::{RefusedStances, StanceSampler};
 pub use surface_legs::SurfaceLegs;
 pub(crate) use travel::drive_amounts;
 pub use travel::{

@@ -37,6 +37,7 @@ mod gdal_feature;
 mod graph;
 mod heading_steps;
 mod layers;
+mod legs_scenes;
 mod map_equality;
 mod map_nodes;
 mod map_objectives;

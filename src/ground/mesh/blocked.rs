@@ -15,29 +15,29 @@ pub struct BlockedSpan {
 
 /// A union of blocked lofts, ascending and disjoint.
 #[derive(Clone, Debug, Default)]
-pub(super) struct BlockedLofts {
+pub(in crate::ground) struct BlockedLofts {
     spans: Vec<BlockedSpan>,
 }
 
 /// A free interval of lofts, and the facets that bound it where facets do.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FreeSpan {
-    pub(super) lofts: SlopeInterval,
-    pub(super) lower: Option<FacetId>,
-    pub(super) upper: Option<FacetId>,
+pub(in crate::ground) struct FreeSpan {
+    pub(in crate::ground) lofts: SlopeInterval,
+    pub(in crate::ground) lower: Option<FacetId>,
+    pub(in crate::ground) upper: Option<FacetId>,
 }
 
 impl BlockedLofts {
-    pub(super) fn clear(&mut self) {
+    pub(in crate::ground) fn clear(&mut self) {
         self.spans.clear();
     }
 
-    pub(super) fn spans(&self) -> &[BlockedSpan] {
+    pub(in crate::ground) fn spans(&self) -> &[BlockedSpan] {
         &self.spans
     }
 
     /// Adds the lofts that a facet blocks; intervals that touch become one.
-    pub(super) fn insert(&mut self, lofts: SlopeInterval, facet: FacetId) {
+    pub(in crate::ground) fn insert(&mut self, lofts: SlopeInterval, facet: FacetId) {
         if lofts.is_empty() {
             return;
         }
@@ -62,7 +62,7 @@ impl BlockedLofts {
     }
 
     /// Whether one span blocks a whole interval.
-    pub(super) fn covers(&self, lofts: SlopeInterval) -> bool {
+    pub(in crate::ground) fn covers(&self, lofts: SlopeInterval) -> bool {
         let at = self.spans.partition_point(|known| known.lofts.upper < lofts.upper);
         self.spans.get(at).is_some_and(|span| span.lofts.lower <= lofts.lower)
     }
@@ -70,7 +70,7 @@ impl BlockedLofts {
     /// The parts of an interval that are not blocked, ascending.
     ///
     /// A span is open, since arcs of its ends graze: an end of the interval that is also one of a span is free.
-    pub(super) fn free_in(&self, within: SlopeInterval) -> impl Iterator<Item = FreeSpan> + '_ {
+    pub(in crate::ground) fn free_in(&self, within: SlopeInterval) -> impl Iterator<Item = FreeSpan> + '_ {
         let ends = self.spans.iter().map(Some).chain([None]);
         let mut from = (within.lower, None);
         let mut done = false;

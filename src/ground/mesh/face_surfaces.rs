@@ -12,9 +12,9 @@ use crate::{
 
 /// What holds on a kind of face.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FaceSurface {
-    pub(super) ground: FacetGround,
-    pub(super) surface: SurfaceProperties,
+pub(in crate::ground) struct FaceSurface {
+    pub(in crate::ground) ground: FacetGround,
+    pub(in crate::ground) surface: SurfaceProperties,
 }
 
 /// A group that no face of a mesh belongs to.
@@ -78,7 +78,7 @@ impl MeshGround {
     }
 
     /// The surface of a facet.
-    pub(super) fn face_surface(&self, facet: FacetId) -> &FaceSurface {
+    pub(in crate::ground) fn face_surface(&self, facet: FacetId) -> &FaceSurface {
         &self.faces[self.tree.mesh().faces().of(facet.index())]
     }
 

@@ -46,7 +46,7 @@ use crate::{
     terrain::{MeshTree, VerticalPlane},
     world::{Derating, FaceGroups, Gravity, Hopper, SurfaceProperties},
 };
-use blocked::BlockedLofts;
+pub(super) use blocked::BlockedLofts;
 use face_surfaces::{FaceSurface, surfaces};
 
 /// A mesh with the hopper, gravity and the surface: all that a hop between two of its points depends on. A clone shares the mesh.
@@ -79,8 +79,8 @@ pub struct MeshCourse {
 /// Buffers of the windows of one hop after another.
 #[derive(Clone, Debug, Default)]
 pub struct MeshBuffers {
-    blocked: BlockedLofts,
-    free: Vec<SlopeInterval>,
+    pub(super) blocked: BlockedLofts,
+    pub(super) free: Vec<SlopeInterval>,
 }
 
 impl MeshGround {
@@ -256,7 +256,13 @@ impl MeshGround {
     }
 
     /// Whether a part of the mesh within a rectangle of the plane of a hop may block lofts of an interval that are not blocked yet.
-    fn may_block(&self, course: &MeshCourse, [low, high]: [ChainPoint; 2], within: SlopeInterval, blocked: &BlockedLofts) -> bool {
+    pub(super) fn may_block(
+        &self,
+        course: &MeshCourse,
+        [low, high]: [ChainPoint; 2],
+        within: SlopeInterval,
+        blocked: &BlockedLofts,
+    ) -> bool {
         let run_m = course.sight.run_m();
         let (from_m, to_m) = (low.x_m.max(0.0), high.x_m.min(run_m));
         if from_m > to_m {

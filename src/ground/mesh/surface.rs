@@ -64,7 +64,7 @@ impl MeshGround {
     }
 
     /// The friction of a facet; `None` where angles are stated instead.
-    pub(super) fn friction_of(&self, facet: FacetId) -> Option<FrictionCone> {
+    pub(in crate::ground) fn friction_of(&self, facet: FacetId) -> Option<FrictionCone> {
         let face = self.face_surface(facet);
         face.ground.friction.or_else(|| face.surface.constant_friction())
     }

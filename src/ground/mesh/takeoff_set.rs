@@ -71,8 +71,18 @@ impl MeshGround {
         // Without an end of what is looked for, the cut goes on to the last facet.
         let all = SlopeInterval { lower: 0.0, upper: f64::INFINITY };
         self.block(&course, [takeoff, landing], all, &mut blocked);
-        let (windows, conflict) = self.evaluate(&course, &limits, &blocked);
-        Some(MeshTakeoffSet { course, limits, blocked: blocked.spans().to_vec(), windows, conflict, refused_by })
+        Some(MeshTakeoffSet { refused_by, ..self.set_of(course, limits, &blocked) })
+    }
+
+    /// The set of a hop by its limits and what the ground blocks.
+    pub(in crate::ground) fn set_of(
+        &self,
+        course: MeshCourse,
+        limits: Vec<LimitInterval>,
+        blocked: &BlockedLofts,
+    ) -> MeshTakeoffSet {
+        let (windows, conflict) = self.evaluate(&course, &limits, blocked);
+        MeshTakeoffSet { course, limits, blocked: blocked.spans().to_vec(), windows, conflict, refused_by: [None; 2] }
     }
 
     /// The windows that all limits leave, or the conflict that leaves none.

@@ -163,6 +163,47 @@ pub fn grow_roadmap<G: RoadmapGround>(
     Ok(grown)
 }
 
+/// The nodes that a roadmap grows by between two looks whether its start leads to its goal.
+const JOIN_STEP: usize = 4;
+
+/// Grows a roadmap from its start and goal until one leads to the other, by a few nodes at a time, as the planners of Campana and others do;
+/// with the exact windows of every hop. The answer is the best path of that roadmap.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn grow_until_joined<G: RoadmapGround>(
+    ground: &G,
+    ends: [G::Node; 2],
+    sampler: &mut dyn RoadmapSampler<G::Node>,
+    question: &RoadmapQuestion<'_>,
+    limits: RoadmapLimits,
+    progress: &dyn Progress,
+) -> Result<GrownRoadmap<G::Node>, Cancelled> {
+    let began = Instant::now();
+    let mut grown = over_roadmap(ground, Roadmap::new(), ends, question, progress)?;
+    grown.end = loop {
+        if grown.route.path.is_some() {
+            break RoadmapEnd::Joined;
+        }
+        let room = limits.contacts_max.saturating_sub(grown.roadmap.contact_count());
+        if room == 0 {
+            break RoadmapEnd::Contacts;
+        }
+        if limits.time_max.is_some_and(|most| began.elapsed() >= most) {
+            break RoadmapEnd::Time;
+        }
+        let nodes = sampler.all_over(JOIN_STEP.min(room), &|_| true);
+        if nodes.is_empty() {
+            break RoadmapEnd::Exhausted;
+        }
+        grown.roadmap.extend(ground, nodes, progress)?;
+        grown.route = grown.roadmap.route(ground, grown.ends, question)?;
+    };
+    grown.record();
+    grown.drawn = sampler.drawn();
+    Ok(grown)
+}
+
 /// The best path between two contacts over a roadmap that is known: both join it, and no other contact does.
 ///
 /// # Errors

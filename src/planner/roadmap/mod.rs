@@ -22,7 +22,7 @@ mod one_by_one;
 mod route;
 mod sample;
 
-pub use anytime::{GAIN_MIN, GrownRoadmap, RoadmapEnd, RoadmapLimits, RoadmapRound, grow_roadmap, over_roadmap};
+pub use anytime::{GAIN_MIN, GrownRoadmap, RoadmapEnd, RoadmapLimits, RoadmapRound, grow_roadmap, grow_until_joined, over_roadmap};
 pub use file::RoadmapFileError;
 pub use graph::{Roadmap, RoadmapHop};
 pub use ground::{RoadmapGround, RoadmapSampler};

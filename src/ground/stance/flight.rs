@@ -1,0 +1,156 @@
+//! The windows of a hop from one stance to another.
+//!
+//! ```text
+//!     piece k of n: the root between k X / n and (k + 1) X / n from the take-off, the trunk turned to the middle of the piece,
+//!     its boxes grown on every side by r theta / (2 n): r the distance of the farthest corner from the root, theta the whole turn
+//! ```
+
+use std::ops::ControlFlow;
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::{Pose, Stance, StanceBuffers, StanceGround};
+use crate::{
+    ballistics::{
+        LineOfSight,
+        limits::{FlownBox, blocked_lofts_of_box},
+    },
+    ground::{MeshCourse, MeshTakeoffSet, mesh::BlockedLofts},
+    hop::envelope_limits,
+    quantity::SlopeInterval,
+    terrain::VerticalPlane,
+    world::{Contact, TrunkBox},
+};
+
+/// The greatest turn of the trunk within a piece of an arc, rad: ten degrees.
+const TURN_OF_PIECE: f64 = 0.174_532_925_199_432_95;
+
+/// A trunk over a piece of an arc.
+#[derive(Clone, Debug)]
+struct FlownTrunk {
+    /// Where the root is, m from the take-off.
+    between_m: [f64; 2],
+    boxes: Vec<FlownBox>,
+}
+
+impl StanceGround {
+    /// The course of a hop; `None` where one root is right over the other.
+    pub fn course(&self, takeoff: &Stance, landing: &Stance) -> Option<MeshCourse> {
+        if let (Some(from), Some(to)) = (takeoff.point(), landing.point()) {
+            return self.mesh().course(from, to);
+        }
+        let origin = takeoff.pose().root_m;
+        let away = landing.pose().root_m - origin;
+        let run_m = (away.x * away.x + away.y * away.y).sqrt();
+        if run_m <= self.mesh().tree().resolution_m() {
+            return None;
+        }
+        let heading = away.xy() / run_m;
+        Some(MeshCourse { plane: VerticalPlane { origin, heading }, sight: LineOfSight::new(run_m, away.z) })
+    }
+
+    /// The feasible windows of a hop, as lofts over its line of sight, ascending and disjoint; none if no arc is feasible, and `None` for
+    /// a vertical hop.
+    pub fn windows<'b>(
+        &self,
+        takeoff: &Stance,
+        landing: &Stance,
+        buffers: &'b mut StanceBuffers,
+    ) -> Option<(LineOfSight, &'b [SlopeInterval])> {
+        if let (Some(from), Some(to)) = (takeoff.point(), landing.point()) {
+            return self.mesh().windows(from, to, &mut buffers.mesh);
+        }
+        buffers.mesh.free.clear();
+        let course = self.course(takeoff, landing)?;
+        let sight = course.sight;
+        if !self.mesh().speed_bounds().span(sight.length_m(), sight.rise_m()) {
+            return Some((sight, &[]));
+        }
+        let heading = course.plane.heading;
+        let [from, to] =
+            [(takeoff, Contact::Takeoff), (landing, Contact::Landing)].map(|(at, kind)| self.allowed(at, heading, kind));
+        let envelope = self.mesh().envelope();
+        let lofts = envelope.lofts(sight, from, to);
+        let within = SlopeInterval { lower: lofts.lower.max(0.0), upper: lofts.upper };
+        if lofts.is_empty() || within.upper <= 0.0 {
+            return Some((sight, &[]));
+        }
+        self.block(&course, [takeoff, landing], within, &mut buffers.mesh.blocked);
+        let (speeds, gravity) = (envelope.takeoff_speeds(), envelope.gravity_m_s2());
+        for part in buffers.mesh.blocked.free_in(within) {
+            buffers.mesh.free.extend(speeds.windows(sight, part.lofts, gravity).map(|window| window.lofts));
+        }
+        Some((sight, &buffers.mesh.free))
+    }
+
+    /// The feasible take-off set of a hop with each limit by itself; `None` for a vertical hop.
+    pub fn takeoff_set(&self, takeoff: &Stance, landing: &Stance) -> Option<MeshTakeoffSet> {
+        if let (Some(from), Some(to)) = (takeoff.point(), landing.point()) {
+            return self.mesh().takeoff_set(from, to);
+        }
+        let course = self.course(takeoff, landing)?;
+        let heading = course.plane.heading;
+        let [from, to] =
+            [(takeoff, Contact::Takeoff), (landing, Contact::Landing)].map(|(at, kind)| self.allowed(at, heading, kind));
+        let limits = envelope_limits(self.mesh().envelope(), course.sight, Ok(from), Ok(to));
+        let mut blocked = BlockedLofts::default();
+        self.block(&course, [takeoff, landing], SlopeInterval { lower: 0.0, upper: f64::INFINITY }, &mut blocked);
+        Some(self.mesh().set_of(course, limits, &blocked))
+    }
+
+    /// Which lofts of an interval the ground blocks for the trunk. The search ends where it blocks all.
+    fn block(&self, course: &MeshCourse, [takeoff, landing]: [&Stance; 2], within: SlopeInterval, blocked: &mut BlockedLofts) {
+        blocked.clear();
+        let (sight, clearance) = (course.sight, self.mesh().envelope().clearance());
+        let (radius_m, trunks) = self.trunks(course, [takeoff.pose(), landing.pose()]);
+        let shared = std::cell::RefCell::new(blocked);
+        let enters = |rectangle| self.mesh().may_block(course, rectangle, within, &shared.borrow());
+        let _ = self.mesh().tree().beside(&course.plane, radius_m, enters, |facet, corners| {
+            let triangle = corners.map(|corner| course.plane.framed(corner));
+            let along = triangle.map(|corner| corner.x);
+            let [first, last] = [along[0].min(along[1]).min(along[2]) - radius_m, along[0].max(along[1]).max(along[2]) + radius_m];
+            let mut blocked = shared.borrow_mut();
+            for trunk in &trunks {
+                if first > trunk.between_m[1] || last < trunk.between_m[0] {
+                    continue;
+                }
+                for part in &trunk.boxes {
+                    blocked.insert(blocked_lofts_of_box(sight, &triangle, part, trunk.between_m, clearance), facet);
+                }
+            }
+            if blocked.covers(within) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+    }
+
+    /// The trunk over the pieces of a hop, and the distance of its farthest corner from the root.
+    fn trunks(&self, course: &MeshCourse, [from, to]: [&Pose; 2]) -> (f64, Vec<FlownTrunk>) {
+        let robot = self.robot();
+        let corner_m = robot.trunk_radius_m();
+        let turn = from.turn.angle_to(&to.turn);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 19 pieces")]
+        let pieces = if corner_m > 0.0 { ((turn / TURN_OF_PIECE).ceil().max(1.0)) as u32 } else { 1 };
+        let grown_m = corner_m * turn / (2.0 * f64::from(pieces));
+        let point = [TrunkBox::upright(nalgebra::Point3::origin(), Vector3::zeros())];
+        let parts = if robot.trunk().is_empty() { &point[..] } else { robot.trunk() };
+        let trunks = (0..pieces).map(|piece| {
+            let share = |at: f64| (f64::from(piece) + at) / f64::from(pieces);
+            let turn = turned(from, to, share(0.5));
+            let framed = |direction: Vector3<f64>| course.plane.turned(turn * direction);
+            let boxes = parts.iter().map(|part| {
+                let half = part.half_m.add_scalar(grown_m);
+                let edges = [0, 1, 2].map(|axis| framed(part.axes * Vector3::ith(axis, half[axis])));
+                FlownBox::new(framed(part.centre_m.coords), edges)
+            });
+            let run_m = course.sight.run_m();
+            let end_m = if piece + 1 == pieces { run_m } else { run_m * share(1.0) };
+            FlownTrunk { between_m: [run_m * share(0.0), end_m], boxes: boxes.collect() }
+        });
+        // A corner of a grown box is farther out by at most the diagonal of what it grew by.
+        (corner_m + 3.0_f64.sqrt() * grown_m, trunks.collect())
+    }
+}
+
+/// How the trunk is turned at a share of the flight: evenly, the shorter way around.
+pub(super) fn turned(from: &Pose, to: &Pose, share: f64) -> UnitQuaternion<f64> {
+    from.turn.try_slerp(&to.turn, share, 1e-9).unwrap_or(if share < 0.5 { from.turn } else { to.turn })
+}
