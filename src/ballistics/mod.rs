@@ -40,6 +40,7 @@ mod line_of_sight;
 mod path_bounds;
 mod plane_times;
 mod safety;
+pub mod stance;
 
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
 pub use bounce::{LevelBounces, bounced, level_bounces};

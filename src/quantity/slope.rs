@@ -17,6 +17,25 @@ impl SlopeInterval {
     /// No direction.
     pub const EMPTY: Self = Self { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
 
+    /// The slopes of the directions forwards between two sides, each (ahead, up): from `lower` anticlockwise to `upper`, less than half
+    /// a turn. Where straight up lies between them the upper end is infinite, where straight down does the lower one.
+    ///
+    /// ```
+    /// use chta::quantity::SlopeInterval;
+    /// assert_eq!(SlopeInterval::between_sides([2.0, 1.0], [2.0, 3.0]), SlopeInterval { lower: 0.5, upper: 1.5 });
+    /// assert_eq!(SlopeInterval::between_sides([2.0, 1.0], [-1.0, 3.0]), SlopeInterval { lower: 0.5, upper: f64::INFINITY });
+    /// assert!(SlopeInterval::between_sides([-1.0, 3.0], [-2.0, 1.0]).is_empty());
+    /// ```
+    #[inline]
+    pub fn between_sides(lower: [f64; 2], upper: [f64; 2]) -> Self {
+        match (lower[0] > 0.0, upper[0] > 0.0) {
+            (true, true) => Self { lower: lower[1] / lower[0], upper: upper[1] / upper[0] },
+            (true, false) => Self { lower: lower[1] / lower[0], upper: f64::INFINITY },
+            (false, true) => Self { lower: f64::NEG_INFINITY, upper: upper[1] / upper[0] },
+            (false, false) => Self::EMPTY,
+        }
+    }
+
     /// Whether the interval is empty. An interval with a NaN end counts as empty.
     pub fn is_empty(self) -> bool {
         let nonempty = self.lower <= self.upper;

@@ -14,6 +14,9 @@ pub struct PreparedCone {
 }
 
 impl PreparedCone {
+    /// A cone without an angle: its axis alone.
+    pub(crate) const RAY: Self = Self { sine: 0.0, cosine: 1.0 };
+
     /// Of a cone.
     pub fn new(cone: FrictionCone) -> Self {
         let mu = cone.coefficient();
@@ -54,21 +57,36 @@ impl PreparedCone {
     /// ```
     #[inline]
     pub fn slopes(&self, normal: Vector3<f64>, heading: Vector2<f64>) -> SlopeInterval {
+        match self.sides(normal, heading) {
+            Some([lower, upper]) => SlopeInterval::between_sides(lower, upper),
+            None => SlopeInterval::EMPTY,
+        }
+    }
+
+    /// The sides of the cone in the plane of travel, (ahead, up), the upper one less than half a turn anticlockwise of the lower; `None`
+    /// where the plane misses the cone. The equation is that of [`slopes`](Self::slopes).
+    #[inline]
+    pub(crate) fn sides(&self, normal: Vector3<f64>, heading: Vector2<f64>) -> Option<[[f64; 2]; 2]> {
         let (ahead, up) = (normal.x * heading.x + normal.y * heading.y, normal.z);
         let across = (normal.x * heading.y - normal.y * heading.x).abs();
         let left = (self.sine - across) * (self.sine + across);
         if left < 0.0 {
-            return SlopeInterval::EMPTY;
+            return None;
         }
         let side = left.sqrt();
         let lower = [ahead * self.cosine + up * side, up * self.cosine - ahead * side];
         let upper = [ahead * self.cosine - up * side, up * self.cosine + ahead * side];
-        match (lower[0] > 0.0, upper[0] > 0.0) {
-            (true, true) => SlopeInterval { lower: lower[1] / lower[0], upper: upper[1] / upper[0] },
-            (true, false) => SlopeInterval { lower: lower[1] / lower[0], upper: f64::INFINITY },
-            (false, true) => SlopeInterval { lower: f64::NEG_INFINITY, upper: upper[1] / upper[0] },
-            (false, false) => SlopeInterval::EMPTY,
-        }
+        Some([lower, upper])
+    }
+
+    /// The sine of the half-angle.
+    pub(crate) const fn sine(&self) -> f64 {
+        self.sine
+    }
+
+    /// The cosine of the half-angle.
+    pub(crate) const fn cosine(&self) -> f64 {
+        self.cosine
     }
 }
 

@@ -77,6 +77,7 @@ mod segment_hops;
 mod sidecars;
 mod slice_file;
 mod sound_files;
+mod stance_cones;
 mod sweep;
 mod takeoff_speeds;
 mod terrain_files;
