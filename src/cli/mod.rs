@@ -87,6 +87,7 @@ fn answer_of(command: Command) -> Result<Answer, Failure> {
         Command::Require(args) => commands::require::run(&args),
         Command::Trade(args) => commands::trade::run(&args),
         Command::Compare(args) => commands::compare::run(&args),
+        Command::Stance(args) => commands::stance::run(&args),
         Command::Arena(args) => commands::arena::run(&args),
         Command::Synth(args) => commands::synth::run(&args),
         Command::Bodies => commands::bodies::run(),

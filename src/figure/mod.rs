@@ -47,6 +47,7 @@ mod rose;
 mod scale;
 mod sheet;
 mod spans;
+mod stance;
 mod stop_panel;
 mod symbols;
 mod terrain_panel;
@@ -78,6 +79,7 @@ pub use picture::{Caption, Picture, PictureFormat};
 pub use rose::draw_rose;
 pub use scale::Scale;
 pub use spans::{Closure, GroundSpan, GroundUse};
+pub use stance::{FootMark, StanceFigure, StandingRobot, draw_stance};
 pub use trials::{
     ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, FrontAgainst, FrontFigure,
     FrontPoint, FrontValue, LandingBoxes, LandingErrorFigure, OutcomeBars, SensitivityBar, SensitivityFigure, SimulationFigure,

@@ -5,6 +5,7 @@ mod execute;
 mod generate;
 mod hop;
 mod over_mesh;
+mod stances_again;
 mod steps;
 mod timetable;
 
@@ -12,7 +13,8 @@ pub use drive_again::{DriveViolation, DrivenAgain, drive_again};
 pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLimit, Violation, execute, execute_over_mesh};
 pub use generate::{PathError, TooManyHops, generate, generate_over};
 pub use hop::{Aim, Hop, HopPath, Propellant, RollOut, Totals, heading_deg};
-pub use over_mesh::path_over_mesh;
+pub use over_mesh::{path_over_mesh, path_over_stances};
+pub use stances_again::{StanceFault, StanceViolation, flown_by_stances};
 pub use steps::NoCommand;
 pub(crate) use steps::{SteppedGround, nearest_command};
 pub use timetable::{Phase, TimedState, Timetable, TimetableError};

@@ -26,6 +26,7 @@ pub use interval::{Interval, Outwards, Rounding};
 pub(crate) use names::{by_name, variant_by_name};
 pub use normal::{normal_cdf, normal_quantile, standard_normals};
 pub(crate) use number_text::{decimal_comma, number_help};
+pub(crate) use points::part_between;
 pub use points::{ChainPoint, MapPoint};
 pub use quadratic::{MonicQuadratic, Roots};
 pub use slope::SlopeInterval;

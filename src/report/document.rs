@@ -53,13 +53,15 @@ pub enum DocumentKind {
     MapTravel,
     /// What an answer takes before it is computed: [`SizeAnswer`](super::SizeAnswer).
     Size,
+    /// Where a robot with legs stands: [`StanceAnswer`](super::StanceAnswer).
+    Stance,
     /// A path of a wheeled jumper among boxes: [`ArenaAnswer`](super::ArenaAnswer).
     Arena,
 }
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 24] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -82,6 +84,7 @@ impl DocumentKind {
         Self::MapMesh,
         Self::MapTravel,
         Self::Size,
+        Self::Stance,
         Self::Arena,
     ];
 
@@ -110,6 +113,7 @@ impl DocumentKind {
             Self::MapMesh => "map-mesh",
             Self::MapTravel => "map-travel",
             Self::Size => "size",
+            Self::Stance => "stance",
             Self::Arena => "arena",
         }
     }

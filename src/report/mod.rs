@@ -33,6 +33,7 @@ mod sensitivity_answer;
 mod sigma_margins;
 mod simulate_answer;
 mod size_answer;
+mod stance_answer;
 mod stated;
 mod success_record;
 mod text;
@@ -97,6 +98,9 @@ pub use simulate_answer::{
     SuccessRequirement, simulate_text,
 };
 pub use size_answer::{SizeAnswer, SizeRecord};
+pub use stance_answer::{
+    BeamRecord, ElevationRecord, FootRecord, PoseRecord, RoseRecord, StanceAnswer, TriedPoses, heading_of, stance_text,
+};
 pub use success_record::{
     FrontRecord, FrontSearchRecord, FrontSuccess, SuccessBudgetRecord, amount_front_text, estimate_ci95, front_text,
 };

@@ -66,6 +66,9 @@ mod sense;
 mod sensitivity;
 mod simulate;
 pub mod slice;
+mod stance;
+#[cfg(feature = "plot")]
+mod stance_picture;
 mod swept_key;
 mod to_go;
 mod trade;
@@ -107,6 +110,9 @@ pub use require::{RangeProblem, RequireError, Required, Requirement, require};
 pub use schema::SchemaKind;
 pub use sense::TrialGround;
 pub use simulate::{SimulateError, SimulateOptions, Simulated, Trials, simulate};
+pub use stance::{ContactsError, StanceError, StanceQuestion, StanceTerrain, Stood, contacts_of, stand};
+#[cfg(feature = "plot")]
+pub use stance_picture::contacts_picture;
 pub use swept_key::SweptKey;
 pub use trade::{CellError, Trade, TradeError, TradedCells, Varied, verdict};
 pub use traded::{Traded, trade};

@@ -8,7 +8,7 @@ use crate::{
     report::{
         ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
         MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer,
-        SimulateAnswer, SizeAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+        SimulateAnswer, SizeAnswer, StanceAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
     },
     scenario::scenario_schema,
 };
@@ -69,6 +69,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::MapMesh => derived::<MeshMapAnswer>(),
         DocumentKind::MapTravel => derived::<TravelMapAnswer>(),
         DocumentKind::Size => derived::<SizeAnswer>(),
+        DocumentKind::Stance => derived::<StanceAnswer>(),
         DocumentKind::Arena => return arena_schema(),
     };
     close(&mut schema, false);

@@ -61,8 +61,8 @@ pub use geotiff::{Band, ResultBands, geotiff_bytes, read_geotiff_bytes, result_g
 pub use lattice::PostLattice;
 pub use mesh::{
     FaceKind, FaceKinds, Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshFlaws, MeshFormatWritten, MeshSlice, MeshTree,
-    NearestOnMesh, SlabPolygon, VerticalPlane, WALL_RUN_M, Wall, looks_like_mesh, mesh_bytes, read_mesh, read_mesh_bytes,
-    read_mesh_with, slice_mesh,
+    NearestOnMesh, SlabPolygon, VerticalPlane, WALL_RUN_M, Wall, looks_like_mesh, mesh_bytes, mesh_of_dem, read_mesh,
+    read_mesh_bytes, read_mesh_with, slice_mesh,
 };
 pub(crate) use mesh::{binary_stl_length, format_name as mesh_format};
 pub use no_data::{InvalidNoData, NoData, NoDataRule};

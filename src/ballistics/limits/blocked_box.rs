@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 
 use super::{
     ClearanceProfile,
-    convex_hull::{HULL_POINTS, blocked_by_hull},
+    convex_hull::{HULL_POINTS, blocked_by_hull, convex_hull},
 };
 use crate::{
     ballistics::LineOfSight,
@@ -85,12 +85,34 @@ pub fn blocked_lofts_of_box(
     between_m: [f64; 2],
     clearance: ClearanceProfile,
 ) -> SlopeInterval {
+    let mut points = [ChainPoint::new(0.0, 0.0); HULL_POINTS];
+    let count = crossings(triangle, flown, |[x_m, z_m], count| {
+        // Over the line of sight straight lines stay straight.
+        points[count] = ChainPoint::new(x_m, z_m - sight.slope() * x_m);
+    });
+    if count == 0 {
+        return SlopeInterval::EMPTY;
+    }
+    blocked_by_hull(sight.run_m(), between_m, &mut points[..count], clearance)
+}
+
+/// The border of the places of the plane of travel at which a box of fixed orientation meets a triangle: a convex polygon, by its corners in
+/// order, as horizontal distance from the take-off and height over it, m. Empty if there are none.
+pub fn border_of_box(triangle: &[Vector3<f64>; 3], flown: &FlownBox) -> Vec<ChainPoint> {
+    let mut points = Vec::new();
+    crossings(triangle, flown, |[x_m, z_m], _| points.push(ChainPoint::new(x_m, z_m)));
+    let mut border = [ChainPoint::new(0.0, 0.0); HULL_POINTS + 1];
+    if points.is_empty() { points } else { convex_hull(&mut points, &mut border).to_vec() }
+}
+
+/// Visits places of the plane of travel whose convex hull holds all places at which a box meets a triangle, with their numbers; how many there
+/// are, at most [`HULL_POINTS`].
+fn crossings(triangle: &[Vector3<f64>; 3], flown: &FlownBox, mut visit: impl FnMut([f64; 2], usize)) -> usize {
     let left = triangle.map(|corner| corner.y);
     let [rightmost, leftmost] = [left[0].min(left[1]).min(left[2]), left[0].max(left[1]).max(left[2])];
     if rightmost > flown.left_m[1] || leftmost < flown.left_m[0] {
-        return SlopeInterval::EMPTY;
+        return 0;
     }
-    let mut points = [ChainPoint::new(0.0, 0.0); HULL_POINTS];
     let mut count = 0;
     // The edges of the polytope are among those of the box at corners of the triangle, and those of the triangle at corners of the box.
     let mut cross = |from: Vector3<f64>, to: Vector3<f64>| {
@@ -100,9 +122,7 @@ pub fn blocked_lofts_of_box(
         let apart = from.y - to.y;
         let share = if apart == 0.0 { 0.0 } else { from.y / apart };
         let mut add = |share: f64| {
-            let (x_m, z_m) = (from.x + (to.x - from.x) * share, from.z + (to.z - from.z) * share);
-            // Over the line of sight straight lines stay straight.
-            points[count] = ChainPoint::new(x_m, z_m - sight.slope() * x_m);
+            visit([from.x + (to.x - from.x) * share, from.z + (to.z - from.z) * share], count);
             count += 1;
         };
         add(share);
@@ -120,10 +140,7 @@ pub fn blocked_lofts_of_box(
             cross(triangle[i] - corner, triangle[(i + 1) % 3] - corner);
         }
     }
-    if count == 0 {
-        return SlopeInterval::EMPTY;
-    }
-    blocked_by_hull(sight.run_m(), between_m, &mut points[..count], clearance)
+    count
 }
 
 #[cfg(test)]

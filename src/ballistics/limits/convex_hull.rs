@@ -1,7 +1,7 @@
 //! The lofts that a convex obstacle in the plane of travel blocks, given by points of which it is the hull.
 
 use super::{ClearanceProfile, blocked_lofts};
-use crate::quantity::{ChainPoint, SlopeInterval};
+use crate::quantity::{ChainPoint, SlopeInterval, part_between};
 
 /// The most points of a hull.
 pub(super) const HULL_POINTS: usize = 128;
@@ -22,8 +22,7 @@ pub(super) fn blocked_by_hull(
     let mut blocked = SlopeInterval::EMPTY;
     for (i, from) in border.iter().enumerate() {
         let to = border[(i + 1) % border.len()];
-        let ends = if from.x_m <= to.x_m { [*from, to] } else { [to, *from] };
-        if let Some(part) = within(between_m, ends) {
+        if let Some(part) = part_between(between_m, [*from, to]) {
             let lofts = blocked_lofts(run_m, part, clearance);
             blocked = SlopeInterval { lower: blocked.lower.min(lofts.lower), upper: blocked.upper.max(lofts.upper) };
         }
@@ -31,19 +30,10 @@ pub(super) fn blocked_by_hull(
     blocked
 }
 
-/// The part of a segment between two distances; `None` where it has none, or touches only the end of what it lies beside.
-fn within([first_m, last_m]: [f64; 2], [from, to]: [ChainPoint; 2]) -> Option<[ChainPoint; 2]> {
-    if to.x_m <= first_m || from.x_m >= last_m {
-        return None;
-    }
-    let at = |x_m: f64| ChainPoint::new(x_m, from.z_m + (to.z_m - from.z_m) * ((x_m - from.x_m) / (to.x_m - from.x_m)));
-    Some([if from.x_m < first_m { at(first_m) } else { from }, if to.x_m > last_m { at(last_m) } else { to }])
-}
-
 /// The corners of the convex hull of points, in order around it.
 ///
 /// Source: A. M. Andrew 1979, *Another efficient algorithm for convex hulls in two dimensions*.
-fn convex_hull<'a>(points: &mut [ChainPoint], hull: &'a mut [ChainPoint]) -> &'a [ChainPoint] {
+pub(super) fn convex_hull<'a>(points: &mut [ChainPoint], hull: &'a mut [ChainPoint]) -> &'a [ChainPoint] {
     points.sort_unstable_by(|a, b| a.x_m.total_cmp(&b.x_m).then(a.z_m.total_cmp(&b.z_m)));
     let turns_left =
         |a: ChainPoint, b: ChainPoint, c: ChainPoint| (b.x_m - a.x_m) * (c.z_m - a.z_m) - (b.z_m - a.z_m) * (c.x_m - a.x_m) > 0.0;

@@ -5,6 +5,7 @@ mod journeys;
 mod maps;
 mod position;
 mod setup;
+mod stance;
 mod synth;
 mod terrains;
 
@@ -26,6 +27,7 @@ pub(crate) use maps::{FanArgs, MapArgs, NodeSpacing};
 pub(crate) use position::{Position, place};
 use position::{lon_lat, map_point, position};
 pub(crate) use setup::{CompletionsArgs, ManArgs, SchemaArgs};
+pub(crate) use stance::StanceArgs;
 pub(crate) use synth::{MeshArg, SynthArgs};
 pub(crate) use terrains::SliceArgs;
 
@@ -56,6 +58,7 @@ pub(crate) enum Command {
     Require(RequireArgs),
     Trade(TradeArgs),
     Compare(CompareArgs),
+    Stance(Box<StanceArgs>),
     Arena(Box<ArenaArgs>),
     Synth(Box<SynthArgs>),
     /// List the known bodies with gravity, radius and their source

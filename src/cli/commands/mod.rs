@@ -22,5 +22,6 @@ mod run_travel;
 pub(super) mod schema;
 pub(super) mod simulate;
 pub(super) mod slice;
+pub(super) mod stance;
 pub(super) mod synth;
 pub(super) mod trade;

@@ -8,6 +8,7 @@ mod mesh_plan;
 mod names;
 mod pairs;
 mod result;
+mod stance;
 mod vary;
 
 use std::{
@@ -32,6 +33,7 @@ pub(crate) use mesh_plan::{MeshPlanInput, is_over_mesh, load_mesh_plan, load_mes
 pub(crate) use names::relative_name;
 pub(crate) use pairs::read_pairs;
 pub(crate) use result::{MeshResult, plan_to_fly};
+pub(crate) use stance::{contacts_document, load_stance};
 pub(crate) use vary::load_to_vary;
 
 use super::{

@@ -48,6 +48,7 @@ use crate::{
 };
 pub(super) use blocked::BlockedLofts;
 use face_surfaces::{FaceSurface, surfaces};
+pub(super) use room::LeastRoom;
 
 /// A mesh with the hopper, gravity and the surface: all that a hop between two of its points depends on. A clone shares the mesh.
 #[derive(Clone, Debug)]

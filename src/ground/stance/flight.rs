@@ -12,12 +12,15 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::{Pose, Stance, StanceBuffers, StanceGround};
 use crate::{
     ballistics::{
-        LineOfSight,
-        limits::{FlownBox, blocked_lofts_of_box},
+        Arc, LineOfSight,
+        limits::{FlownBox, blocked_lofts_of_box, border_of_box},
     },
-    ground::{MeshCourse, MeshTakeoffSet, mesh::BlockedLofts},
+    ground::{
+        MeshCourse, MeshTakeoffSet,
+        mesh::{BlockedLofts, LeastRoom},
+    },
     hop::envelope_limits,
-    quantity::SlopeInterval,
+    quantity::{ChainPoint, SlopeInterval, part_between},
     terrain::VerticalPlane,
     world::{Contact, TrunkBox},
 };
@@ -120,6 +123,33 @@ impl StanceGround {
             }
             if blocked.covers(within) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
+    }
+
+    /// How much farther from the ground over and under its trunk a robot flies, vertically, than the clearance asks for, where that is least:
+    /// the distance, m, and how far that is from the take-off, m. `None` where no ground is over or under the trunk.
+    pub fn least_room(&self, course: &MeshCourse, [takeoff, landing]: [&Stance; 2], arc: &Arc) -> Option<(f64, f64)> {
+        if takeoff.point().is_some() {
+            return self.mesh().least_room(course, arc);
+        }
+        let (run_m, near_m) = (course.sight.run_m(), self.mesh().tree().resolution_m());
+        let (radius_m, trunks) = self.trunks(course, [takeoff.pose(), landing.pose()]);
+        let mut room = LeastRoom::new(arc, self.mesh().envelope().clearance(), near_m);
+        let enters = |[low, high]: [ChainPoint; 2]| high.x_m >= 0.0 && low.x_m <= run_m;
+        let _ = self.mesh().tree().beside(&course.plane, radius_m, enters, |_, corners| {
+            let triangle = corners.map(|corner| course.plane.framed(corner));
+            for trunk in &trunks {
+                for part in &trunk.boxes {
+                    let border = border_of_box(&triangle, part);
+                    for (i, from) in border.iter().enumerate() {
+                        if let Some([from, to]) = part_between(trunk.between_m, [*from, border[(i + 1) % border.len()]]) {
+                            room.beside(from, to);
+                        }
+                    }
+                }
+            }
+            ControlFlow::Continue(())
+        });
+        room.found()
     }
 
     /// The trunk over the pieces of a hop, and the distance of its farthest corner from the root.

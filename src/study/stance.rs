@@ -1,0 +1,313 @@
+//! Where a robot with legs can stand, and which way it may jump from there.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use nalgebra::{Point3, Vector3};
+
+use super::{Extent, TooLarge, mesh_flaws::flaw_warnings, mesh_hop::on_mesh, physics::check_extent};
+use crate::{
+    ballistics::stance::{ConeKind, ContactCone},
+    chain::ConstraintProblem,
+    ground::{MeshContact, MeshGround, NoFriction, NoStance, Stance, StanceGround, StandsUp},
+    quantity::MapPoint,
+    report::{StanceAnswer, TriedPoses, heading_of},
+    scenario::Scenario,
+    terrain::{Dem, MapBounds, MeshTree, TerrainError, mesh_of_dem, read_mesh_with},
+    world::{Hopper, HopperLimits, Robot},
+};
+
+use super::MeshHopError;
+
+/// The terrain that a robot stands on.
+#[derive(Clone, Debug)]
+pub enum StanceTerrain {
+    /// A mesh, by its file and metres per unit.
+    Mesh(PathBuf, f64),
+    /// An elevation raster.
+    Dem(Dem),
+}
+
+/// What is asked.
+#[derive(Clone, Debug)]
+pub struct StanceQuestion<'a> {
+    /// The scenario: gravity, friction and, where it has them, the limits of the machine.
+    pub scenario: &'a Scenario,
+    /// The terrain.
+    pub terrain: &'a StanceTerrain,
+    /// The robot.
+    pub robot: Robot,
+    /// The place, moved to the nearest point of the surface, m; of a DEM the height is left out.
+    pub at_m: (MapPoint, Option<f64>),
+    /// Which way its forward axis points, degrees clockwise from +y; `None`: all around is tried.
+    pub heading_deg: Option<f64>,
+    /// How far its root is over the place, along its up axis, m; `None`: from the trunk on the ground to the legs at full length is tried.
+    pub height_m: Option<f64>,
+    /// Which way is up for it.
+    pub up: StandsUp,
+    /// How many headings the rose has.
+    pub headings: u32,
+}
+
+/// Why there is no answer. That the robot cannot stand is one.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StanceError {
+    /// The file.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
+    /// A terrain larger than its body.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
+    /// The place gives no contact, or the surface no grip.
+    #[error(transparent)]
+    Mesh(#[from] MeshHopError),
+    /// The surface states no grip.
+    #[error(transparent)]
+    Constraints(#[from] ConstraintProblem),
+    /// The surface states no friction.
+    #[error(transparent)]
+    NoFriction(#[from] NoFriction),
+    /// A mesh whose place has no height.
+    #[error("found a place of two numbers, expected X,Y,Z on a mesh, which may have several floors one over another")]
+    NoHeight,
+    /// A place off the map.
+    #[error("the place ({x_m}, {y_m}) m is off the map, which spans x {} to {} m and y {} to {} m", map.min.x, map.max.x, map.min.y, map.max.y)]
+    OffTheMap {
+        /// Where, m.
+        x_m: f64,
+        /// Where, m.
+        y_m: f64,
+        /// The map.
+        map: MapBounds,
+    },
+}
+
+/// A stance, with everything that its views need.
+#[derive(Clone, Debug)]
+pub struct Stood {
+    /// The ground with the robot.
+    pub ground: StanceGround,
+    /// The stance; `None` if the robot cannot stand there.
+    pub stance: Option<Stance>,
+    /// The place on the surface.
+    pub at: MeshContact,
+    /// The answer as plain data.
+    pub answer: StanceAnswer,
+    /// Warnings about the terrain and the stance.
+    pub warnings: Vec<String>,
+}
+
+/// Headings tried where none is given.
+const HEADINGS: u32 = 36;
+
+/// Heights tried where none is given, as shares of the range, the middle ones first.
+const HEIGHTS: [f64; 11] = [0.7, 0.6, 0.8, 0.5, 0.9, 0.4, 0.95, 0.3, 0.2, 0.1, 1.0];
+
+/// A foothold whose facets are this far from its mean normal is on a ridge or in a notch, degrees.
+const WIDE_SPREAD_DEG: f64 = 10.0;
+
+/// Looks for a stance of a robot at a place: the one with the most feet on the ground, and of those the one with the widest beam of take-off
+/// angles.
+///
+/// # Errors
+/// [`StanceError`].
+pub fn stand(question: &StanceQuestion<'_>) -> Result<Stood, StanceError> {
+    let StanceQuestion { scenario, robot, headings, .. } = question;
+    let hopper = with_robot(&scenario.hopper, robot);
+    let (mesh, mut warnings) = mesh_of(question)?;
+    warnings.extend(flaw_warnings(&mesh));
+    let ground = MeshGround::new(mesh, &hopper, scenario.body.gravity, &scenario.surface)?;
+    let ground = ground.with_groups(&scenario.groups, &scenario.derating).map_err(MeshHopError::from)?;
+    let at = match (question.terrain, question.at_m) {
+        (StanceTerrain::Mesh(..), (map, Some(z_m))) => Point3::new(map.x, map.y, z_m),
+        (StanceTerrain::Mesh(..), (_, None)) => return Err(StanceError::NoHeight),
+        (StanceTerrain::Dem(_), (map, _)) => over(&ground, map),
+    };
+    let at = on_mesh(&ground, at, "place", &mut warnings)?;
+    let ground = StanceGround::new(ground, robot.clone(), ConeKind::Exact, question.up)?;
+    let normal: Vector3<f64> = at.facets().iter().map(|facet| facet.normal).sum();
+    let up = ground.up_over(normal);
+    let [low_m, high_m] = ground.heights_m();
+    let heights: Vec<f64> = question
+        .height_m
+        .map_or_else(|| HEIGHTS.iter().map(|share| low_m + (high_m - low_m) * share).collect(), |height_m| vec![height_m]);
+    let all_around = (0..HEADINGS).map(|turn| 360.0 * f64::from(turn) / f64::from(HEADINGS));
+    let facing: Vec<f64> = question.heading_deg.map_or_else(|| all_around.collect(), |deg| vec![deg]);
+    let mut tried = TriedPoses::default();
+    let (mut best, mut refusal): (Option<(Ranking, Stance, f64)>, Option<NoStance>) = (None, None);
+    for height_m in heights {
+        for heading_deg in &facing {
+            let outcome = ground.stand_over(&at, up, heading_of(*heading_deg), height_m);
+            tried.count(&outcome);
+            match outcome {
+                Ok(stance) => {
+                    let ranking = Ranking::of(&stance);
+                    if best.as_ref().is_none_or(|(known, ..)| ranking.is_better_than(known)) {
+                        best = Some((ranking, stance, height_m));
+                    }
+                }
+                // The refusal that was the nearest to a stance.
+                Err(other) => refusal = Some(refusal.map_or(other.clone(), |known| nearer(known, other))),
+            }
+        }
+    }
+    let answer = match (&best, &refusal) {
+        (Some((_, stance, height_m)), _) => StanceAnswer::of_stance(&ground, stance, (tried, Some(*height_m)), *headings),
+        (None, Some(refusal)) => StanceAnswer::of_refusal(ground.robot().name(), refusal, tried),
+        (None, None) => StanceAnswer::of_contacts(&[], *headings),
+    };
+    let spread = answer.contacts.iter().filter_map(|foot| Some((foot.limb.clone()?, foot.spread_deg?)));
+    warnings.extend(spread.filter(|(_, deg)| *deg > WIDE_SPREAD_DEG).map(|(limb, deg)| {
+        format!("{limb} stands on facets that differ by up to {deg:.1} deg from the normal that stands for them: a ridge or a notch within its reach")
+    }));
+    Ok(Stood { ground, stance: best.map(|(_, stance, _)| stance), at, answer, warnings })
+}
+
+/// Contacts without a robot, from a table: `normal_x,normal_y,normal_z,friction_coefficient`, one row a contact.
+///
+/// # Errors
+/// [`ContactsError`], with the line.
+pub fn contacts_of(file: &Path) -> Result<Vec<ContactCone>, ContactsError> {
+    let problem = |line: u64, problem: String| ContactsError { file: file.to_path_buf(), line, problem };
+    let text =
+        fs::read_to_string(file).map_err(|error| problem(0, format!("cannot be read ({error}), expected a readable CSV file")))?;
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|error| problem(1, format!("{error}, expected the header {CONTACT_COLUMNS}")))?.clone();
+    if header.iter().collect::<Vec<_>>().join(",") != CONTACT_COLUMNS {
+        return Err(problem(
+            1,
+            format!("found the header {}, expected {CONTACT_COLUMNS}", header.iter().collect::<Vec<_>>().join(",")),
+        ));
+    }
+    let mut found = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| {
+            let line = error.position().map_or(0, csv::Position::line);
+            problem(line, format!("{error}, expected the four numbers {CONTACT_COLUMNS}"))
+        })?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let mut numbers = [0.0; 4];
+        for (number, (field, name)) in numbers.iter_mut().zip(record.iter().zip(CONTACT_COLUMNS.split(','))) {
+            *number = field
+                .parse()
+                .ok()
+                .filter(|number: &f64| number.is_finite())
+                .ok_or_else(|| problem(line, format!("{name} is \"{field}\", expected a finite number")))?;
+        }
+        let [x, y, z, mu] = numbers;
+        let normal = Vector3::new(x, y, z).try_normalize(1e-9);
+        let normal =
+            normal.ok_or_else(|| problem(line, "the normal is (0, 0, 0), expected a direction out of the ground".to_owned()))?;
+        let friction = crate::world::FrictionCone::new(mu).map_err(|error| problem(line, error.to_string()))?;
+        found.push(ContactCone::new(normal, friction).map_err(|error| problem(line, error.to_string()))?);
+    }
+    if found.is_empty() {
+        return Err(problem(1, "found no contact, expected at least one row".to_owned()));
+    }
+    Ok(found)
+}
+
+/// The header of a table of contacts.
+const CONTACT_COLUMNS: &str = "normal_x,normal_y,normal_z,friction_coefficient";
+
+/// A table of contacts that cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}:{line}: {problem}", file.display())]
+pub struct ContactsError {
+    /// The file.
+    pub file: PathBuf,
+    /// The line, from 1; 0 for the whole file.
+    pub line: u64,
+    /// What was found and expected.
+    pub problem: String,
+}
+
+/// Which of two stances is better.
+struct Ranking {
+    feet: usize,
+    beam: f64,
+}
+
+impl Ranking {
+    fn of(stance: &Stance) -> Self {
+        let opening = |cone: &crate::ballistics::stance::ConeSum| {
+            let cuts = (0..HEADINGS).map(|turn| cone.cut(heading_of(360.0 * f64::from(turn) / f64::from(HEADINGS))));
+            cuts.filter_map(|cut| cut.opening()).map(crate::quantity::Angle::degrees).sum::<f64>()
+        };
+        Self { feet: stance.footholds().len(), beam: stance.cone().map_or(0.0, opening) }
+    }
+
+    /// Beams that differ by rounding are equal, so that of poses turned into one another the first is kept.
+    fn is_better_than(&self, other: &Self) -> bool {
+        self.feet > other.feet || (self.feet == other.feet && self.beam > other.beam * (1.0 + 1e-9))
+    }
+}
+
+/// Of two refusals the one that was nearer to a stance: the cone, then the feet by their number, then the trunk.
+fn nearer(known: NoStance, other: NoStance) -> NoStance {
+    let rank = |refusal: &NoStance| match refusal {
+        NoStance::Slips => usize::MAX,
+        NoStance::NoDirection => usize::MAX - 1,
+        NoStance::TooFewContacts { found, .. } => 2 + found,
+        NoStance::Trunk(_) | NoStance::NoContact(_) => 1,
+        NoStance::InsideRock => 0,
+    };
+    if rank(&other) > rank(&known) { other } else { known }
+}
+
+/// The limits of a hopper, with those that a robot states in their place where the hopper states none, and the lesser of both.
+pub(super) fn with_robot(hopper: &Hopper, robot: &Robot) -> Hopper {
+    let limits = *hopper.limits();
+    let least = |own: f64, stated: Option<f64>| stated.map_or(own, |stated| own.min(stated));
+    let takeoff_speed_max_m_s = least(limits.takeoff_speed_max_m_s, robot.takeoff_speed_max_m_s());
+    let landing_speed_max_m_s = least(limits.landing_speed_max_m_s, robot.landing_speed_max_m_s());
+    let mass_kg = limits.mass_kg.or(robot.mass_kg());
+    Hopper::new(HopperLimits { takeoff_speed_max_m_s, landing_speed_max_m_s, mass_kg, ..limits }).unwrap_or(*hopper)
+}
+
+/// The mesh under a place.
+fn mesh_of(question: &StanceQuestion<'_>) -> Result<(MeshTree, Vec<String>), StanceError> {
+    let StanceQuestion { scenario, terrain, robot, at_m: (at, _), .. } = question;
+    match terrain {
+        StanceTerrain::Mesh(file, scale) => {
+            let read = read_mesh_with(file, *scale, scenario.no_data)?;
+            let mut warnings = read.warnings;
+            warnings.extend(check_extent(&scenario.body, &Extent::of_mesh(&read.mesh.bounds()))?);
+            Ok((MeshTree::new(read.mesh), warnings))
+        }
+        StanceTerrain::Dem(dem) => {
+            let map = dem.bounds();
+            if !map.contains(*at) {
+                return Err(StanceError::OffTheMap { x_m: at.x, y_m: at.y, map });
+            }
+            // The root is at most a leg away from the place, and its feet at most their reach from the root.
+            let reach_m = robot.reach_m() + robot.leg_length_m() + robot.trunk_radius_m();
+            let away = nalgebra::Vector2::repeat(reach_m);
+            let mesh = mesh_of_dem(dem, MapBounds { min: *at - away, max: *at + away })?;
+            Ok((MeshTree::new(mesh), Vec::new()))
+        }
+    }
+}
+
+/// The point of the surface of a DEM at a place: straight down from over its highest post.
+fn over(ground: &MeshGround, map: MapPoint) -> Point3<f64> {
+    let bounds = ground.tree().mesh().bounds();
+    let size_m = bounds.size_m();
+    let top = Point3::new(map.x, map.y, bounds.high_m + size_m);
+    let mut z_m = bounds.high_m;
+    ground.tree().visit(
+        |min, max| min.x <= map.x && map.x <= max.x && min.y <= map.y && map.y <= max.y,
+        |_, [a, b, c]| {
+            let normal = (b - a).cross(&(c - a));
+            let inside =
+                |from: &Point3<f64>, to: &Point3<f64>| (to - from).xy().perp(&(top - from).xy()) >= -1e-9 * size_m * size_m;
+            if normal.z > 0.0 && inside(a, b) && inside(b, c) && inside(c, a) {
+                z_m = a.z - (top - a).xy().dot(&normal.xy()) / normal.z;
+            }
+        },
+    );
+    Point3::new(map.x, map.y, z_m)
+}
