@@ -166,7 +166,7 @@ pub struct RoadmapGapRecord {
 
 impl RoadmapRecord {
     /// From a roadmap, for an objective; of so many facets, so many had their turn.
-    pub fn new(grown: &GrownRoadmap, objective: &Objective, [facets, facets_tried]: [usize; 2]) -> Self {
+    pub fn new<N: Clone + Send + Sync>(grown: &GrownRoadmap<N>, objective: &Objective, [facets, facets_tried]: [usize; 2]) -> Self {
         let DrawnContacts { by_area, on_facets, about_path, buried, outside, useless } = grown.drawn;
         Self {
             planner: RoadmapPlanner::Exact,

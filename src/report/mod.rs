@@ -12,6 +12,7 @@ mod geojson;
 mod hop_answer;
 mod hop_margins;
 pub mod landings;
+mod legs_plan_answer;
 mod limit_counts;
 mod limit_pair;
 mod map_answer;
@@ -60,6 +61,7 @@ pub use hop_answer::{
     WindowRecord,
 };
 pub use hop_margins::HopMarginsRecord;
+pub use legs_plan_answer::{LegsPlanAnswer, RefusedPosesRecord, StanceRecord, legs_plan_text};
 pub use limit_counts::LimitCounts;
 pub use limit_pair::LimitPair;
 pub use map_answer::{

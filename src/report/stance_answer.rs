@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::text::{Sheet, place};
 use crate::{
     ballistics::stance::{ConeKind, ConeSum, ContactCone},
-    ground::{Foothold, LimbOutcome, NoStance, Stance, StanceGround},
+    ground::{Foothold, LimbOutcome, NoStance, Pose, Stance, StanceGround},
     quantity::{Angle, SlopeInterval},
 };
 
@@ -128,6 +128,13 @@ impl ElevationRecord {
     }
 }
 
+impl PoseRecord {
+    /// Of a pose; `height_m`: how far over its place on the surface.
+    pub fn of(pose: &Pose, height_m: Option<f64>) -> Self {
+        Self { root_m: pose.root_m.coords.into(), up: pose.up().into(), heading_deg: heading_deg(pose.heading()), height_m }
+    }
+}
+
 impl TriedPoses {
     /// Counts a pose.
     pub const fn count<T>(&mut self, outcome: &Result<T, NoStance>) {
@@ -195,16 +202,10 @@ impl StanceAnswer {
     /// Of a robot that stands; `poses`: how it was found.
     pub fn of_stance(ground: &StanceGround, stance: &Stance, (poses, height_m): (TriedPoses, Option<f64>), headings: u32) -> Self {
         let cones: Vec<ContactCone> = stance.footholds().iter().filter_map(Foothold::cone).collect();
-        let pose = stance.pose();
         Self {
             robot: Some(ground.robot().name().to_owned()),
             poses: Some(poses),
-            pose: Some(PoseRecord {
-                root_m: pose.root_m.coords.into(),
-                up: pose.up().into(),
-                heading_deg: heading_deg(pose.heading()),
-                height_m,
-            }),
+            pose: Some(PoseRecord::of(stance.pose(), height_m)),
             contacts: FootRecord::all_of(ground, stance),
             ..Self::of_cones(&cones, headings)
         }

@@ -184,11 +184,13 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
         .transpose()
         .map_err(|defect| of_file(defect.into()))?;
     warnings.extend(path.iter().flat_map(|path| scenario.path_warnings(path)));
-    warnings.extend(left_out(scenario, &grown, facets));
+    warnings.extend(left_out(scenario, grown.end, facets));
     let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends, progress)).transpose()?;
     let front = question.front.map(|front| front_of(scenario, &ground, &grown, (front.amount(), path.as_ref())));
     let front = front.transpose().map_err(of_file)?;
-    let mut answer = answer((scenario, &ground), (given_m, &surface, scale), (&grown, facets), (path.as_ref(), gap.as_ref()));
+    let ends_m = [grown.ends.0, grown.ends.1].map(|node| grown.roadmap.contact(node).point_m());
+    let mut answer =
+        answer((scenario, &ground), (given_m, &surface, scale), (&grown, facets, ends_m), (path.as_ref(), gap.as_ref()));
     if let Some(joined) = &joined {
         answer.roadmap.planner = RoadmapPlanner::Prm;
         answer.roadmap.sampled_hops = Some(joined.into());
@@ -229,10 +231,11 @@ fn front_of(
     Ok((rows, of))
 }
 
-fn answer(
+/// The answer of a plan over the nodes of a roadmap; `ends_m`: where the hopper is at start and goal.
+pub(super) fn answer<N: Clone + Send + Sync>(
     (scenario, ground): (&Scenario, &MeshGround),
     (given_m, surface, mesh_scale): ([Point3<f64>; 2], &[MeshContact; 2], f64),
-    (grown, facets): (&GrownRoadmap, [usize; 2]),
+    (grown, facets, ends_m): (&GrownRoadmap<N>, [usize; 2], [Point3<f64>; 2]),
     (path, gap): (Option<&HopPath>, Option<&RoadmapGap>),
 ) -> MeshPlanAnswer {
     let (objective, budgets) = (scenario.full_objective(), scenario.budget.totals(&scenario.hopper));
@@ -245,7 +248,7 @@ fn answer(
     let bounds = ground.speed_bounds();
     let [start, goal] = [0, 1].map(|i| MeshContactRecord::new(ground, &surface[i], given_m[i].coords.into()));
     // Contacts that stand off the surface are as far apart as their points.
-    let [first, last] = [grown.ends.0, grown.ends.1].map(|node| grown.roadmap.contact(node).point_m());
+    let [first, last] = ends_m;
     let between = if grown.ends.0 == grown.ends.1 { nalgebra::Vector3::zeros() } else { last - first };
     MeshPlanAnswer {
         mesh_scale,
@@ -269,9 +272,9 @@ fn answer(
 }
 
 /// What the plan leaves out of a scenario, and what its contacts leave out of the mesh.
-fn left_out(scenario: &Scenario, grown: &GrownRoadmap, [facets, turned]: [usize; 2]) -> Vec<String> {
+pub(super) fn left_out(scenario: &Scenario, end: RoadmapEnd, [facets, turned]: [usize; 2]) -> Vec<String> {
     let mut warnings = Vec::new();
-    if grown.end == RoadmapEnd::Given {
+    if end == RoadmapEnd::Given {
         let search = &scenario.mesh_search;
         let drawing = [
             ("search.planner", search.planner == RoadmapPlanner::Prm),
@@ -301,7 +304,7 @@ fn left_out(scenario: &Scenario, grown: &GrownRoadmap, [facets, turned]: [usize;
                 .to_owned(),
         );
     }
-    let ended_early = matches!(grown.end, RoadmapEnd::Contacts | RoadmapEnd::Time);
+    let ended_early = matches!(end, RoadmapEnd::Contacts | RoadmapEnd::Time);
     if scenario.mesh_search.planner == RoadmapPlanner::Prm {
         warnings.push(
             "search.planner = \"prm\" is the method of Campana and Laumond: it tries seven angles of a hop, so that it may miss one through a \

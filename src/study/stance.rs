@@ -128,19 +128,49 @@ pub fn stand(question: &StanceQuestion<'_>) -> Result<Stood, StanceError> {
     };
     let at = on_mesh(&ground, at, "place", &mut warnings)?;
     let ground = StanceGround::new(ground, robot.clone(), ConeKind::Exact, question.up)?;
+    let found = best_stance(&ground, &at, (question.heading_deg, question.height_m));
+    let (best, refusal, tried) = (found.best, found.refusal, found.tried);
+    let answer = match (&best, &refusal) {
+        (Some((stance, height_m)), _) => StanceAnswer::of_stance(&ground, stance, (tried, Some(*height_m)), *headings),
+        (None, Some(refusal)) => StanceAnswer::of_refusal(ground.robot().name(), refusal, tried),
+        (None, None) => StanceAnswer::of_contacts(&[], *headings),
+    };
+    let spread = answer.contacts.iter().filter_map(|foot| Some((foot.limb.clone()?, foot.spread_deg?)));
+    warnings.extend(spread.filter(|(_, deg)| *deg > WIDE_SPREAD_DEG).map(|(limb, deg)| {
+        format!("{limb} stands on facets that differ by up to {deg:.1} deg from the normal that stands for them: a ridge or a notch within its reach")
+    }));
+    Ok(Stood { ground, stance: best.map(|(stance, _)| stance), at, answer, warnings })
+}
+
+/// The stance with the most feet on the ground over a place, and of those the one with the widest beam.
+pub(super) struct BestStance {
+    /// The stance, and how far its root is over the place, m.
+    pub(super) best: Option<(Stance, f64)>,
+    /// The refusal that was the nearest to a stance.
+    pub(super) refusal: Option<NoStance>,
+    /// What became of the poses.
+    pub(super) tried: TriedPoses,
+}
+
+/// Looks for a stance over a place, all around and from the trunk on the ground to the legs at full length where heading and height are not
+/// given.
+pub(super) fn best_stance(
+    ground: &StanceGround,
+    at: &MeshContact,
+    (heading_deg, height_m): (Option<f64>, Option<f64>),
+) -> BestStance {
     let normal: Vector3<f64> = at.facets().iter().map(|facet| facet.normal).sum();
     let up = ground.up_over(normal);
     let [low_m, high_m] = ground.heights_m();
-    let heights: Vec<f64> = question
-        .height_m
-        .map_or_else(|| HEIGHTS.iter().map(|share| low_m + (high_m - low_m) * share).collect(), |height_m| vec![height_m]);
-    let all_around = (0..HEADINGS).map(|turn| 360.0 * f64::from(turn) / f64::from(HEADINGS));
-    let facing: Vec<f64> = question.heading_deg.map_or_else(|| all_around.collect(), |deg| vec![deg]);
+    let all = || HEIGHTS.iter().map(|share| low_m + (high_m - low_m) * share).collect();
+    let heights: Vec<f64> = height_m.map_or_else(all, |height_m| vec![height_m]);
+    let all_around = || (0..HEADINGS).map(|turn| 360.0 * f64::from(turn) / f64::from(HEADINGS)).collect();
+    let facing: Vec<f64> = heading_deg.map_or_else(all_around, |deg| vec![deg]);
     let mut tried = TriedPoses::default();
     let (mut best, mut refusal): (Option<(Ranking, Stance, f64)>, Option<NoStance>) = (None, None);
     for height_m in heights {
         for heading_deg in &facing {
-            let outcome = ground.stand_over(&at, up, heading_of(*heading_deg), height_m);
+            let outcome = ground.stand_over(at, up, heading_of(*heading_deg), height_m);
             tried.count(&outcome);
             match outcome {
                 Ok(stance) => {
@@ -149,21 +179,16 @@ pub fn stand(question: &StanceQuestion<'_>) -> Result<Stood, StanceError> {
                         best = Some((ranking, stance, height_m));
                     }
                 }
-                // The refusal that was the nearest to a stance.
-                Err(other) => refusal = Some(refusal.map_or(other.clone(), |known| nearer(known, other))),
+                Err(other) => {
+                    refusal = Some(match refusal {
+                        Some(known) => nearer(known, other),
+                        None => other,
+                    });
+                }
             }
         }
     }
-    let answer = match (&best, &refusal) {
-        (Some((_, stance, height_m)), _) => StanceAnswer::of_stance(&ground, stance, (tried, Some(*height_m)), *headings),
-        (None, Some(refusal)) => StanceAnswer::of_refusal(ground.robot().name(), refusal, tried),
-        (None, None) => StanceAnswer::of_contacts(&[], *headings),
-    };
-    let spread = answer.contacts.iter().filter_map(|foot| Some((foot.limb.clone()?, foot.spread_deg?)));
-    warnings.extend(spread.filter(|(_, deg)| *deg > WIDE_SPREAD_DEG).map(|(limb, deg)| {
-        format!("{limb} stands on facets that differ by up to {deg:.1} deg from the normal that stands for them: a ridge or a notch within its reach")
-    }));
-    Ok(Stood { ground, stance: best.map(|(_, stance, _)| stance), at, answer, warnings })
+    BestStance { best: best.map(|(_, stance, height_m)| (stance, height_m)), refusal, tried }
 }
 
 /// Contacts without a robot, from a table: `normal_x,normal_y,normal_z,friction_coefficient`, one row a contact.

@@ -161,6 +161,13 @@ fn table_one_in_fifty_runs() {
                 let began = Instant::now();
                 let grown = planned(scene, &ground, &ends, seed);
                 time_s += began.elapsed().as_secs_f64();
+                eprintln!(
+                    "seed {seed}: {:.3} s, {} nodes, {} windows, {:?}",
+                    began.elapsed().as_secs_f64(),
+                    grown.roadmap.contact_count(),
+                    grown.roadmap.window_count(),
+                    grown.end
+                );
                 nodes += f64::from(u32::try_from(grown.roadmap.contact_count()).unwrap());
                 hops += grown.route.path.unwrap().totals.of(Amount::Hops);
             }

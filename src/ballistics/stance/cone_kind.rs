@@ -73,6 +73,28 @@ impl PyramidEdges {
 }
 
 impl ConeKind {
+    /// All kinds, the default first.
+    pub const ALL: [Self; 6] = [
+        Self::Exact,
+        Self::Kc,
+        Self::KcPlus,
+        Self::Pyramid(PyramidEdges::Four),
+        Self::Pyramid(PyramidEdges::Eight),
+        Self::Pyramid(PyramidEdges::Sixteen),
+    ];
+
+    /// The name in scenarios and results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Kc => "kc",
+            Self::KcPlus => "kc-plus",
+            Self::Pyramid(PyramidEdges::Four) => "pyramid-4",
+            Self::Pyramid(PyramidEdges::Eight) => "pyramid-8",
+            Self::Pyramid(PyramidEdges::Sixteen) => "pyramid-16",
+        }
+    }
+
     /// The cone of this kind for the contacts of a stance. For one contact every kind but the pyramids is the cone of that contact.
     ///
     /// # Examples
@@ -117,3 +139,5 @@ impl ConeKind {
         cone.map_or_else(ConeSum::nothing, |cone| ConeSum::new(&[cone]))
     }
 }
+
+crate::quantity::by_name!(ConeKind, ConeKind::ALL);

@@ -94,10 +94,11 @@ pub(crate) fn load_stance(args: &StanceArgs) -> Result<StanceInput, Failure> {
         Position::Along(_) if is_mesh => return Err(Failure::message(format!("--at: {}", at.misfit_in_space()))),
         Position::Along(_) => return Err(Failure::message(format!("--at: {}", at.misfit_on_map()))),
     };
-    let terrain = if is_mesh {
+    let ground = if is_mesh {
         StanceTerrain::Mesh(input.file.clone(), scale)
     } else {
-        StanceTerrain::Dem(DemOptions::default().no_data(scenario.no_data).read(&input.file)?)
+        let read = DemOptions::default().no_data(scenario.no_data).read(&input.file);
+        StanceTerrain::Dem(read.map_err(|error| Failure::about(terrain, &error))?)
     };
     let warnings: Vec<String> = Purpose::Hop.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
     output::warn_all(common.quiet, &warnings);
@@ -108,7 +109,7 @@ pub(crate) fn load_stance(args: &StanceArgs) -> Result<StanceInput, Failure> {
     verbose::settings(&document, &scenario.search);
     let inputs = checksums(&files, &relative_name)?;
     let record = CaseRecord { scenario: document, inputs, warnings, crs: None };
-    Ok(StanceInput { terrain, file: input.file, robot: robot.robot, at_m, scenario, warnings: robot.warnings, record })
+    Ok(StanceInput { terrain: ground, file: input.file, robot: robot.robot, at_m, scenario, warnings: robot.warnings, record })
 }
 
 /// The document of contacts without a robot.

@@ -1,0 +1,94 @@
+//! The path of a robot with legs, as plain data and text.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{FootRecord, MeshPlanAnswer, PoseRecord, mesh_plan_text, text::Sheet};
+use crate::{
+    ground::{LimbOutcome, Stance, StanceGround},
+    planner::RefusedStances,
+};
+
+/// The answer of `chta plan` for a robot with legs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LegsPlanAnswer {
+    /// The name of the robot.
+    pub robot: String,
+    /// Which cone stands for the directions in which its feet push: `exact`, `kc`, `kc-plus`, or pyramids of so many edges, `pyramid-4`,
+    /// `pyramid-8` or `pyramid-16`.
+    pub cone: String,
+    /// Which way is up for its trunk: `normal` or `vertical`.
+    pub up: String,
+    /// Poses that were drawn and gave no stance.
+    pub refused_poses: RefusedPosesRecord,
+    /// The path between stances, whose hops are those of the root of the robot; contacts of the roadmap are stances.
+    #[serde(flatten)]
+    pub plan: MeshPlanAnswer,
+    /// The stances of the path, from start to goal; without a path those two.
+    pub stances: Vec<StanceRecord>,
+}
+
+/// Poses that gave no stance, by the reason.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct RefusedPosesRecord {
+    /// The trunk met the ground, or the root lay inside it.
+    pub trunk: usize,
+    /// Too few feet stood.
+    pub too_few_contacts: usize,
+    /// The feet held no direction, or slipped under the weight of the robot.
+    pub cone: usize,
+}
+
+impl From<RefusedStances> for RefusedPosesRecord {
+    fn from(refused: RefusedStances) -> Self {
+        Self { trunk: refused.trunk, too_few_contacts: refused.contacts, cone: refused.cone }
+    }
+}
+
+/// A stance of a path.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StanceRecord {
+    /// The pose of the trunk.
+    pub pose: PoseRecord,
+    /// Its limbs, and where their feet stand.
+    pub contacts: Vec<FootRecord>,
+    /// Whether the feet can push in every direction, whatever the force.
+    pub force_closure: bool,
+    /// Whether the feet bear its weight without slipping.
+    pub bears_weight: bool,
+}
+
+impl StanceRecord {
+    /// Of a stance.
+    pub fn new(ground: &StanceGround, stance: &Stance) -> Self {
+        Self {
+            pose: PoseRecord::of(stance.pose(), None),
+            contacts: FootRecord::all_of(ground, stance),
+            force_closure: stance.cone().is_some_and(crate::ballistics::stance::ConeSum::is_everything),
+            bears_weight: stance.cone().is_some_and(crate::ballistics::stance::ConeSum::holds_weight),
+        }
+    }
+}
+
+/// The text of `chta plan` for a robot with legs.
+pub fn legs_plan_text(answer: &LegsPlanAnswer) -> String {
+    let mut sheet = Sheet::default();
+    sheet.line(format_args!("{}: cone of its feet {}, up {}", answer.robot, answer.cone, answer.up));
+    let RefusedPosesRecord { trunk, too_few_contacts, cone } = answer.refused_poses;
+    sheet.line(format_args!(
+        "poses without a stance: {trunk} by the trunk, {too_few_contacts} by too few contacts, {cone} by the cone"
+    ));
+    for (number, stance) in answer.stances.iter().enumerate() {
+        let [x, y, z] = stance.pose.root_m;
+        let stand = stance.contacts.iter().filter(|foot| foot.outcome == LimbOutcome::Stands);
+        let names: Vec<&str> = stand.filter_map(|foot| foot.limb.as_deref()).collect();
+        let closure = if stance.force_closure { ", force closure" } else { "" };
+        let slips = if stance.bears_weight { "" } else { ", slips at rest" };
+        sheet.line(format_args!(
+            "stance {number}: root ({x:.3}, {y:.3}, {z:.3}) m, facing {:.0} deg, on {}{closure}{slips}",
+            stance.pose.heading_deg,
+            names.join(", ")
+        ));
+    }
+    sheet.into_text() + &mesh_plan_text(&answer.plan).replace("these contacts", "these stances").replace("contacts (", "stances (")
+}

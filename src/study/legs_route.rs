@@ -1,0 +1,186 @@
+//! A free route of a robot with legs over a mesh, from stance to stance.
+
+use std::path::{Path, PathBuf};
+
+use super::{
+    MeshRouteError,
+    mesh_ends::{MeshEnds, mesh_ends},
+    mesh_route::{answer, left_out},
+    stance::{best_stance, with_robot},
+};
+use crate::{
+    ground::{NoFriction, Stance, StanceGround},
+    path::{HopPath, StanceViolation, flown_by_stances, path_over_stances},
+    planner::{
+        LabelCap, StanceSampler,
+        roadmap::{ContactSampler, GrownRoadmap, RoadmapPlanner, RoadmapQuestion, grow_roadmap, grow_until_joined},
+    },
+    progress::{Cancelled, Progress},
+    report::{LegsPlanAnswer, StanceRecord},
+    scenario::{RobotFileError, Scenario, read_robot},
+};
+
+/// What is asked.
+#[derive(Clone, Copy, Debug)]
+pub struct LegsRouteQuestion<'a> {
+    /// The scenario, with a mesh as it stands and a robot file.
+    pub scenario: &'a Scenario,
+    /// The folder that its paths start from.
+    pub base: &'a Path,
+}
+
+/// Why there is no answer. That there is no path is one.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LegsRouteError {
+    /// The mesh, its keys, or an end that gives no contact.
+    #[error(transparent)]
+    Mesh(#[from] MeshRouteError),
+    /// The robot file.
+    #[error(transparent)]
+    Robot(#[from] RobotFileError),
+    /// The surface states no friction.
+    #[error(transparent)]
+    NoFriction(#[from] NoFriction),
+    /// An end at which the robot cannot stand.
+    #[error(
+        "the robot cannot stand at the {end}, over ({}, {}, {}) m of the surface, in any of {tried} poses: {refusal}; choose another place, or \
+         a robot that fits there",
+        at_m[0], at_m[1], at_m[2]
+    )]
+    NoStance {
+        /// Start or goal.
+        end: &'static str,
+        /// Where it is on the surface, m.
+        at_m: [f64; 3],
+        /// How many poses were tried.
+        tried: u64,
+        /// The refusal of the pose that was the nearest to a stance.
+        refusal: String,
+    },
+    /// A path that breaks a limit when it is flown again.
+    #[error(
+        "the planned path does not pass its own check ({} violations): {}; this is a defect of chta, please report it with the scenario",
+        violations.len(), violations.iter().take(10).map(ToString::to_string).collect::<Vec<_>>().join("; ")
+    )]
+    Defect {
+        /// All violations.
+        violations: Vec<StanceViolation>,
+    },
+}
+
+impl From<Cancelled> for LegsRouteError {
+    fn from(cancelled: Cancelled) -> Self {
+        Self::Mesh(cancelled.into())
+    }
+}
+
+/// A plan of a robot with legs, with everything that its views need.
+#[derive(Clone, Debug)]
+pub struct LegsRouted {
+    /// The ground under the limits that planning may use, with the robot.
+    pub ground: StanceGround,
+    /// The roadmap and its best path.
+    pub grown: GrownRoadmap<Stance>,
+    /// The path of the root with all its numbers.
+    pub path: Option<HopPath>,
+    /// The answer as plain data.
+    pub answer: LegsPlanAnswer,
+    /// Warnings about the mesh, the robot, the search and the path.
+    pub warnings: Vec<String>,
+    /// The files that the robot file names, and itself.
+    pub robot_files: Vec<PathBuf>,
+}
+
+/// Plans the best path of a robot with legs over a mesh by the objective of a scenario, within its budgets, for exact commands.
+///
+/// # Errors
+/// [`LegsRouteError`].
+pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> Result<LegsRouted, LegsRouteError> {
+    let LegsRouteQuestion { scenario, base } = question;
+    let file = base.join(scenario.robot_file.as_deref().unwrap_or_else(|| Path::new("")));
+    let read = read_robot(&file)?;
+    let with_limits = Scenario { hopper: with_robot(&scenario.hopper, &read.robot), ..scenario.clone() };
+    let scenario = &with_limits;
+    let MeshEnds { ground, scale, given_m, surface, mut warnings, .. } = mesh_ends(scenario, base, 0.0)?;
+    warnings.extend(read.warnings);
+    let ground =
+        StanceGround::new(ground, read.robot, crate::ballistics::stance::ConeKind::Exact, crate::ground::StandsUp::Normal)?;
+    let stance = |at: usize, end| {
+        let found = best_stance(&ground, &surface[at], (None, None));
+        found.best.map(|(stance, _)| stance).ok_or_else(|| LegsRouteError::NoStance {
+            end,
+            at_m: surface[at].point_m().coords.into(),
+            tried: found.tried.tried,
+            refusal: found.refusal.map(|refusal| refusal.to_string()).unwrap_or_default(),
+        })
+    };
+    let ends = [stance(0, "start")?, stance(1, "goal")?];
+    let search = &scenario.mesh_search;
+    let seed = search.seed.unwrap_or(0);
+    let contacts = ContactSampler::new(ground.mesh(), search.bounds, 0.0, seed).map_err(MeshRouteError::from)?;
+    let mut sampler = StanceSampler::new(&ground, contacts, seed);
+    let (objective, budgets) = (scenario.full_objective(), scenario.total_budgets());
+    let asked = RoadmapQuestion {
+        objective: &objective,
+        budgets: &budgets,
+        commands: scenario.commands,
+        takeoff: scenario.search.takeoff,
+        cap: LabelCap::default(),
+    };
+    let limits = search.limits();
+    let grown = match search.planner {
+        RoadmapPlanner::Exact => grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?,
+        RoadmapPlanner::Prm => grow_until_joined(&ground, ends, &mut sampler, &asked, limits, progress)?,
+    };
+    let facets = [sampler.contacts().facet_count(), sampler.contacts().turned()];
+    let refused = sampler.refused();
+    let stances: Vec<&Stance> = grown.route.path.as_ref().map_or_else(
+        || vec![grown.roadmap.contact(grown.ends.0), grown.roadmap.contact(grown.ends.1)],
+        |found| found.contacts.iter().map(|node| grown.roadmap.contact(*node)).collect(),
+    );
+    let path = match &grown.route.path {
+        None => None,
+        Some(found) => Some(path_over_stances(&ground, &stances, &found.arcs).ok_or(MeshRouteError::Lost)?),
+    };
+    if let Some(path) = &path {
+        let violations = flown_by_stances(&ground, &stances, path);
+        if !violations.is_empty() {
+            return Err(LegsRouteError::Defect { violations });
+        }
+        warnings.extend(scenario.path_warnings(path));
+    }
+    warnings.extend(left_out(scenario, grown.end, facets));
+    warnings.extend(assumptions(&ground));
+    let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends, progress)).transpose()?;
+    let ends_m = [grown.ends.0, grown.ends.1].map(|node| grown.roadmap.contact(node).pose().root_m);
+    let mut plan =
+        answer((scenario, ground.mesh()), (given_m, &surface, scale), (&grown, facets, ends_m), (path.as_ref(), gap.as_ref()));
+    plan.roadmap.planner = search.planner;
+    let answer = LegsPlanAnswer {
+        robot: ground.robot().name().to_owned(),
+        cone: ground.cone_kind().name().to_owned(),
+        up: ground.stands_up().name().to_owned(),
+        refused_poses: refused.into(),
+        plan,
+        stances: stances.iter().map(|stance| StanceRecord::new(&ground, stance)).collect(),
+    };
+    let robot_files = std::iter::once(file).chain(read.files).collect();
+    Ok(LegsRouted { ground, grown, path, answer, warnings, robot_files })
+}
+
+/// What a plan of a robot with legs assumes.
+fn assumptions(ground: &StanceGround) -> Vec<String> {
+    if ground.is_point() {
+        return Vec::new();
+    }
+    let mut found = vec![
+        "the feet are estimated from the space that they reach, and keep off the ground in flight: legs are drawn in, and the joints are not \
+         looked at"
+            .to_owned(),
+    ];
+    if ground.robot().stroke_m().is_none() {
+        found.push("take-off and landing are impulses: gravity does nothing while the feet push".to_owned());
+    }
+    found
+}
