@@ -49,7 +49,8 @@
 //! ```text
 //! progress     how far long work is, and whether it goes on
 //! quantity     angles, slopes, points, ids, sign-safe roots
-//! world        bodies, the hopper, friction cones, directions of travel
+//! world        bodies, the hopper or the robot with legs, friction cones, directions of travel
+//! robot_model  joints of legs from a URDF, forward and inverse kinematics
 //! ballistics   the equations of one arc: every limit as an interval of its take-off slope
 //! arena        a flat floor with boxes, a wheeled robot that jumps, three planners
 //! terrain      elevation rasters with their overlays, slices of them, synthetic terrain from a seed
@@ -96,6 +97,7 @@ pub mod progress;
 pub mod quantity;
 pub mod reach;
 pub mod report;
+pub mod robot_model;
 pub mod scenario;
 pub mod study;
 pub mod terrain;

@@ -201,6 +201,9 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
         (FileKind::ChainCsv, Role::DemKey | Role::MeshKey) => {
             format!("write chain = {toml} in place of {key}, and start_x_m and goal_x_m in place of start_m and goal_m")
         }
+        (FileKind::Robot, Role::Chain | Role::HopTerrain | Role::Scenario | Role::ScenarioOption | Role::MapTarget) => {
+            format!("name it in a scenario: [robot] file = {toml}")
+        }
         (FileKind::Scenario | FileKind::Result, _) if role.key().is_some() => {
             format!("name in {key} the file itself; a scenario stands where the command takes one, as in `chta run {name} -o out`")
         }

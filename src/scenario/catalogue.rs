@@ -81,7 +81,10 @@ impl Key {
     pub fn names_a_file(&self) -> bool {
         matches!(
             (self.table, self.name),
-            ("terrain", "dem" | "mesh" | "chain") | ("surface", "friction_raster" | "keep_out") | ("uncertainty", "errors")
+            ("robot", "file")
+                | ("terrain", "dem" | "mesh" | "chain")
+                | ("surface", "friction_raster" | "keep_out")
+                | ("uncertainty", "errors")
         )
     }
 
@@ -191,7 +194,7 @@ const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 118] = [
+pub const CATALOGUE: [Key; 119] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -278,6 +281,7 @@ pub const CATALOGUE: [Key; 118] = [
         Kind::Number { min: 1e-9, max: 1.0 },
         "share of the energy store that becomes motion, for the totals of energy; absent: 1",
     ),
+    key("robot", "file", Kind::Text, "robot with legs, path from this file (docs/legs.md); [hopper] gives what it leaves open"),
     key("surface", "friction_coefficient", Kind::Number { min: 0.0, max: 1e6 }, "cone about the surface normal"),
     key("surface", "takeoff_from_slope_deg", Kind::AngleRange, "take-off angles above the slope, degrees, instead of friction"),
     key("surface", "landing_from_slope_deg", Kind::AngleRange, "landing angles above the slope, degrees, instead of friction"),

@@ -17,6 +17,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     let mut tables = Map::new();
     tables.insert("body".to_owned(), body(scenario));
     tables.insert("hopper".to_owned(), hopper(scenario));
+    tables.insert("robot".to_owned(), object([("file", scenario.robot_file.as_deref().map(|path| named(path).into()))]));
     tables.insert("surface".to_owned(), surface(scenario, named));
     tables.insert("contact".to_owned(), contact(scenario));
     tables.insert("terrain".to_owned(), terrain(scenario, named));

@@ -40,6 +40,8 @@ pub enum FileKind {
     PathCsv,
     /// A scenario.
     Scenario,
+    /// A robot with legs.
+    Robot,
     /// A result, which has a scenario in it.
     Result,
     /// `GeoJSON`.
@@ -137,6 +139,7 @@ impl FileKind {
             Self::MeasuredCsv => "a CSV of measured errors of hops".to_owned(),
             Self::PathCsv => "a CSV of the hops of a path".to_owned(),
             Self::Scenario => "a scenario (TOML)".to_owned(),
+            Self::Robot => "a robot file (TOML)".to_owned(),
             Self::Result => "a result (JSON)".to_owned(),
             Self::GeoJson => "a GeoJSON".to_owned(),
             Self::Json => "a JSON file without a scenario in it".to_owned(),
@@ -191,6 +194,10 @@ fn of_text(text: &str) -> Option<FileKind> {
     let start = text.trim_start();
     if start.starts_with('{') {
         return Some(of_json(start));
+    }
+    // A scenario has a table [robot] too, and no lists of tables.
+    if statements(text).any(|line| line.starts_with("[[limb]]") || line.starts_with("[[trunk]]")) {
+        return Some(FileKind::Robot);
     }
     let is_table = |name: &str| CATALOGUE.iter().any(|key| key.table == name);
     let names_table = |line: &str| match line.strip_prefix('[') {

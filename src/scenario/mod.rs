@@ -1,4 +1,4 @@
-//! The scenario: TOML as typed, then validated, and written again.
+//! The scenario and the robot file: TOML as typed, then validated; the scenario is written again.
 
 mod arena;
 mod backslashes;
@@ -16,6 +16,7 @@ mod mesh_search;
 mod problem;
 mod propulsion;
 mod read;
+mod robot_file;
 mod route;
 mod schema;
 mod terrain_source;
@@ -33,6 +34,7 @@ pub use file_kind::FileKind;
 pub use mesh_search::MeshSearch;
 pub use problem::{KeyPath, ProblemKind, ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, LackingKey, Scenario};
+pub use robot_file::{ROBOT_KEYS, RobotFile, RobotFileError, RobotKey, RobotKeyKind, read_robot, robot_of_toml, robot_schema};
 pub use route::Route;
 pub use schema::scenario_schema;
 pub use terrain_source::TerrainSource;

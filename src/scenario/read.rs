@@ -48,6 +48,8 @@ pub struct Scenario {
     pub body: BodyChoice,
     /// The robot.
     pub hopper: Hopper,
+    /// Path of the robot file, of a robot with legs, relative to the scenario's folder.
+    pub robot_file: Option<PathBuf>,
     /// The ground's grip.
     pub surface: SurfaceProperties,
     /// What groups of faces of a mesh have of their own.
@@ -152,6 +154,7 @@ impl Scenario {
         Ok(Self {
             body,
             hopper,
+            robot_file: entries.text("robot", "file").map(PathBuf::from),
             surface,
             groups: entries.face_groups("surface", "group"),
             friction_raster,

@@ -10,7 +10,7 @@ use crate::{
         MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer,
         SimulateAnswer, SizeAnswer, StanceAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
     },
-    scenario::scenario_schema,
+    scenario::{robot_schema, scenario_schema},
 };
 
 /// What a schema describes.
@@ -18,20 +18,23 @@ use crate::{
 pub enum SchemaKind {
     /// A scenario.
     Scenario,
+    /// A robot file.
+    Robot,
     /// The document with an answer.
     Answer(DocumentKind),
 }
 
 impl SchemaKind {
-    /// All of them, the scenario first.
+    /// All of them, those of files that are written by hand first.
     pub fn all() -> impl Iterator<Item = Self> {
-        std::iter::once(Self::Scenario).chain(DocumentKind::ALL.into_iter().map(Self::Answer))
+        [Self::Scenario, Self::Robot].into_iter().chain(DocumentKind::ALL.into_iter().map(Self::Answer))
     }
 
     /// The name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Scenario => "scenario",
+            Self::Robot => "robot",
             Self::Answer(kind) => kind.name(),
         }
     }
@@ -41,6 +44,7 @@ impl SchemaKind {
     pub fn schema(self) -> Value {
         match self {
             Self::Scenario => scenario_schema(),
+            Self::Robot => robot_schema(),
             Self::Answer(kind) => answer_schema(kind),
         }
     }

@@ -25,7 +25,7 @@ pub use gravity::{Gravity, InvalidGravity, InvalidRadius};
 pub use hopper::{ClearanceRule, Hopper, HopperLimits, HopperProblem, InvalidHopper};
 pub use legs::{
     ConvexWorkspace, HalfSpace, InvalidHull, InvalidRobot, Limb, Robot, RobotDescription, RobotPart, RobotProblem, Shell,
-    TrunkBounds, TrunkBox, Workspace,
+    TrunkBounds, TrunkBox, Workspace, roll_pitch_yaw,
 };
 pub use limit::{Limit, SPEED_TOLERANCE, tolerant_speed_m_s};
 pub use prepared_cone::PreparedCone;

@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 117] = [
+const TELLING: [(&str, &str); 118] = [
     ("body.name", "moon"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -39,6 +39,7 @@ const TELLING: [(&str, &str); 117] = [
     ("hopper.settling_time_s", "60"),
     ("hopper.preparation_energy_j", "60"),
     ("hopper.efficiency", "0.5"),
+    ("robot.file", "none.toml"),
     ("surface.friction_coefficient", "0.3"),
     ("surface.rest_slope_max_deg", "1"),
     ("surface.keep_out", "none.tif"),

@@ -48,6 +48,6 @@ fn schemas_are_listed_and_printed_and_an_unknown_one_is_refused() {
     }
     desk.refused(
         &["schema", "plam"],
-        &["KIND: 'plam' is unknown, expected one of scenario, hop, hop-mesh, check", "the nearest is plan"],
+        &["KIND: 'plam' is unknown, expected one of scenario, robot, hop, hop-mesh, check", "the nearest is plan"],
     );
 }

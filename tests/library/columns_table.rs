@@ -279,7 +279,7 @@ fn document() -> String {
     let mut text = HEAD.to_owned();
     let mut records = Records { by_name: BTreeMap::new() };
     let answers: Vec<_> =
-        SchemaKind::all().filter(|kind| *kind != SchemaKind::Scenario).map(|kind| (kind.name(), kind.schema())).collect();
+        SchemaKind::all().filter(|kind| matches!(kind, SchemaKind::Answer(_))).map(|kind| (kind.name(), kind.schema())).collect();
     for (_, schema) in &answers {
         records.add(schema);
     }

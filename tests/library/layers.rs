@@ -6,10 +6,11 @@
 use std::{fs, path::Path};
 
 /// The layers of modules, from the top. The last two are the binary's own modules, below all of the library.
-const LADDER: [&str; 21] = [
+const LADDER: [&str; 22] = [
     "progress",
     "quantity",
     "world",
+    "robot_model",
     "ballistics",
     "arena",
     "terrain",

@@ -71,6 +71,8 @@ mod planner;
 mod progress;
 mod proof;
 mod proof_terrain;
+mod robot_file;
+mod robot_model;
 mod scenario_round_trip;
 mod schemas;
 mod segment_hops;

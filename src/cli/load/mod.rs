@@ -231,7 +231,9 @@ fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends
             }
         }
         // The measured errors of a scenario beside the chain lie where that scenario does.
-        for (key, path) in source.entries.files().into_iter().filter(|(key, path)| key.table == "uncertainty" && path != "-") {
+        for (key, path) in
+            source.entries.files().into_iter().filter(|(key, path)| matches!(key.table, "robot" | "uncertainty") && path != "-")
+        {
             source.entries.redirect(key, &source.base.join(path).to_string_lossy());
         }
         source.entries.set_by_option("CHAIN", "terrain", "chain", input.file.to_string_lossy().into_owned().into());
@@ -532,6 +534,13 @@ fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&Sea
 
 /// Validates keys; every problem names the file that they came from.
 fn validated(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failure> {
+    let robot = entries.files().into_iter().find(|(key, _)| key.path() == "robot.file");
+    // For a point the plan would promise what a trunk and limbs do not keep.
+    if let Some((key, file)) = robot.filter(|_| !entries.is_unreadable()) {
+        let message = format!("robot.file is \"{file}\", a robot with legs, and this command answers for a point alone");
+        let help = "remove it from [robot]: [hopper] then states the limits of the point".to_owned();
+        return Err(refused(vec![entries.file_problem(key, message, help)], name, text));
+    }
     Scenario::new(entries).map_err(|problems| refused(problems, name, text))
 }
 

@@ -24,7 +24,7 @@ pub use limb::{Limb, Workspace};
 pub use problem::{InvalidRobot, RobotPart, RobotProblem};
 pub use robot::{Robot, RobotDescription};
 pub use shell::Shell;
-pub use trunk::TrunkBox;
+pub use trunk::{TrunkBox, roll_pitch_yaw};
 
 /// An axis-parallel box in the trunk frame: its least and its greatest corner, m.
 pub type TrunkBounds = [nalgebra::Point3<f64>; 2];

@@ -1,6 +1,8 @@
 //! The boxes of a trunk.
 
-use nalgebra::{Point3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
+
+use crate::quantity::Angle;
 
 /// A box of the trunk, in the trunk frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,5 +40,31 @@ impl TrunkBox {
     /// The distance of its farthest corner from the root, m.
     pub fn radius_m(&self) -> f64 {
         self.corners_m().iter().map(|corner| corner.coords.norm()).fold(0.0, f64::max)
+    }
+}
+
+/// The rotation by roll about x, then pitch about y, then yaw about z, all about axes that stay.
+pub fn roll_pitch_yaw(angles: [Angle; 3]) -> Rotation3<f64> {
+    let [(sr, cr), (sp, cp), (sy, cy)] = angles.map(|angle| libm::sincos(angle.radians()));
+    #[rustfmt::skip]
+    let matrix = Matrix3::new(
+        cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,
+        sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,
+        -sp,     cp * sr,                cp * cr,
+    );
+    Rotation3::from_matrix_unchecked(matrix)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roll_pitch_and_yaw_are_those_of_nalgebra() {
+        for [roll, pitch, yaw] in [[0.0, 0.0, 0.0], [0.3, -0.4, 1.2], [-2.0, 1.5, 3.0]] {
+            let expected = Rotation3::from_euler_angles(roll, pitch, yaw);
+            let found = roll_pitch_yaw([roll, pitch, yaw].map(Angle::from_radians));
+            assert!((found.matrix() - expected.matrix()).amax() < 1e-15);
+        }
     }
 }
