@@ -77,6 +77,7 @@ mod sidecars;
 mod slice_file;
 mod sound_files;
 mod stance_cones;
+mod stance_pushes;
 mod sweep;
 mod takeoff_speeds;
 mod terrain_files;
