@@ -17,20 +17,12 @@ use nalgebra::{Vector2, Vector3};
 use super::stance_cones::{direction, heading, stance};
 use crate::support::Draw;
 
-fn cosine(cone: &ContactCone) -> f64 {
-    1.0 / 1.0f64.hypot(cone.friction().coefficient())
-}
-
 /// A force inside a cone, of a size from 0 to 1; now and then on its edge.
 fn force_in(draw: &mut Draw, cone: &ContactCone) -> Vector3<f64> {
     let normal = cone.normal();
     let aside = direction(draw).cross(&normal).normalize();
     let share = if draw.chance(0.3) { 1.0 - 1e-12 } else { draw.unit().sqrt() };
     (normal + aside * share * cone.friction().coefficient()).normalize() * draw.unit()
-}
-
-fn holds(cone: &ContactCone, force: Vector3<f64>) -> bool {
-    force.dot(&cone.normal()) >= force.norm() * cosine(cone)
 }
 
 /// Contacts on a sphere of half a metre to a metre below or about the centre of mass.
@@ -64,7 +56,8 @@ fn descend(footholds: &[Foothold], forces: &mut [Vector3<f64>], rounds: usize) {
     const WEIGHT: f64 = 3.0;
     let velocity: Vector3<f64> = forces.iter().sum();
     let arm_m = footholds.iter().map(|foot| foot.arm_m.norm()).fold(0.0, f64::max);
-    let step = 1.0 / (footholds.len() as f64 * (WEIGHT * WEIGHT + 1.0));
+    let contacts: f64 = footholds.iter().map(|_| 1.0).sum();
+    let step = 1.0 / (contacts * (WEIGHT * WEIGHT + 1.0));
     let mut ahead = forces.to_vec();
     let mut momentum = 1.0f64;
     for _ in 0..rounds {
@@ -214,7 +207,7 @@ fn planted_pushes_without_spin_are_found_and_directions_beside_them_are_not() {
                     let turned =
                         |angle: f64| [side[0] * angle.cos() - side[1] * angle.sin(), side[0] * angle.sin() + side[1] * angle.cos()];
                     check(turned(0.0), true);
-                    if opening < 3.14 {
+                    if opening < std::f64::consts::PI - 2e-3 {
                         check(turned(outwards * 1e-3), false);
                     }
                     if opening > 2e-6 {
