@@ -1,4 +1,5 @@
-//! The cone of a stance: prepared, and cut by the plane of a heading; beside a plain version that sums pyramids by brute force.
+//! The cone of a stance: prepared, and cut by the plane of a heading; beside a plain version that sums pyramids by brute force. The bounds of
+//! spin and force, and the trunk along an arc.
 //!
 //! `cargo bench --bench stance`. Compare lines of one run with each other: absolute times depend on the machine and its load. Arguments are
 //! numbers of contacts. Half of the stances are on rough ground, half against a wall as well. The plain version forms all sums of two edges of
@@ -9,12 +10,15 @@
 use std::f64::consts::TAU;
 
 use chta::{
-    ballistics::stance::{ConeKind, ConeSum, ContactCone, Foothold, Limb, PyramidEdges, greatest_force_n, least_spin_m2_s},
+    ballistics::{
+        BoxFlight,
+        stance::{ConeKind, ConeSum, ContactCone, Foothold, Limb, PyramidEdges, greatest_force_n, least_spin_m2_s},
+    },
     quantity::SlopeInterval,
     world::FrictionCone,
 };
 use divan::{Bencher, black_box, counter::ItemsCount};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{Point3, Rotation3, Vector2, Vector3};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 const STANCES: usize = 1_000;
@@ -155,4 +159,28 @@ fn greatest_force(bencher: Bencher<'_, '_>, contacts: usize) {
     bencher
         .counter(ItemsCount::new(STANCES))
         .bench_local(|| stances.iter().filter(|limbs| greatest_force_n(black_box(limbs), Vector3::z()).upper > 0.0).count());
+}
+
+/// A box along an arc against triangles of its own size around the arc: the times of contact.
+#[divan::bench]
+fn box_in_flight(bencher: Bencher<'_, '_>) {
+    let mut random = ChaCha8Rng::seed_from_u64(13);
+    let flight = BoxFlight {
+        centre_m: Point3::origin(),
+        velocity_m_s: Vector3::new(2.0, 1.0, 3.0),
+        gravity_m_s2: 1.6,
+        axes: Rotation3::from_euler_angles(0.1, 0.2, 0.3).into_inner(),
+        half_extents_m: Vector3::new(0.3, 0.2, 0.1),
+    };
+    let triangles: Vec<[Point3<f64>; 3]> = (0..STANCES)
+        .map(|_| {
+            let time_s: f64 = random.random_range(0.0..3.75);
+            let near = flight.centre_m + flight.velocity_m_s * time_s - Vector3::z() * (0.8 * time_s * time_s);
+            let middle = near + direction(&mut random) * random.random_range(0.0..1.5);
+            [(); 3].map(|()| middle + direction(&mut random) * 0.3)
+        })
+        .collect();
+    bencher.counter(ItemsCount::new(STANCES)).bench_local(|| {
+        triangles.iter().filter(|triangle| flight.contact_times(black_box(triangle), [0.0, 3.75]).first_s().is_some()).count()
+    });
 }

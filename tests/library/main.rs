@@ -18,6 +18,7 @@ mod ballistics_precision;
 mod ballistics_sampling;
 mod bends;
 mod beside_line;
+mod box_flight;
 mod braked;
 mod chain_csv_problems;
 mod chain_csv_round_trip;
