@@ -19,7 +19,7 @@ const FORCE_WEIGHT: f64 = 30.0;
 
 /// Steps at most towards a push of exactly the force that is asked for. Each brings it nearer by a factor of some
 /// hundred until rounding is left, so two or three are usual.
-const CORRECTIONS_MAX: usize = 12;
+const CORRECTIONS_MAX: usize = 40;
 
 /// Steps at most from outside to a side of the cut. They are Newton's for a convex function: in the tests at most nine.
 const STEPS_MAX: usize = 100;
