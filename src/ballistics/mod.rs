@@ -30,6 +30,7 @@
 
 mod arc;
 mod bounce;
+mod box_flight;
 mod choice;
 mod commands;
 mod delta_v;
@@ -44,6 +45,7 @@ pub mod stance;
 
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
 pub use bounce::{LevelBounces, bounced, level_bounces};
+pub use box_flight::{BoxFlight, ContactTimes};
 pub use choice::{TakeoffChoice, loft_at_share};
 pub use commands::{TakeoffSpeeds, TakeoffWindow};
 pub use delta_v::{STANDARD_GRAVITY_M_S2, delta_v_m_s, delta_v_of_m_s, delta_v_of_propellant_m_s, propellant_kg};

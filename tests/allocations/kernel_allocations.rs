@@ -1,16 +1,18 @@
-//! The hop kernel allocates nothing, pair by pair or by sweep.
+//! The hop kernel allocates nothing, pair by pair or by sweep; nor does the cut of the cone of a stance.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene should stop")]
 
 use std::sync::Arc;
 
 use chta::{
+    ballistics::stance::{ConeKind, ContactCone, PyramidEdges},
     chain::{ConstrainedChain, PolygonalChain},
     ground::{LandingTable, Sweep},
     hop::HopTest,
     quantity::{ChainPoint, VertexId},
     world::{Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SpeedLevels, SurfaceProperties},
 };
+use nalgebra::{Vector2, Vector3};
 use stats_alloc::Region;
 
 use crate::{ALLOCATOR, alone};
@@ -65,6 +67,24 @@ fn ten_thousand_pairs_are_evaluated_without_an_allocation_either_way() {
     assert!(feasible > 300 && refused > 3000, "the pairs are all alike: {feasible} feasible, {refused} refused");
     // The first round creates the working memory, which the other two reuse.
     assert_eq!(quietest(&mut sweep_all), (0, (feasible, refused)));
+}
+
+#[test]
+fn cones_of_stances_are_cut_without_an_allocation() {
+    let _guard = alone();
+    let friction = FrictionCone::new(0.6).unwrap();
+    let normals = [Vector3::new(0.6, 0.0, 0.8), Vector3::new(-0.6, 0.0, 0.8), Vector3::y(), Vector3::new(0.0, -0.8, 0.6)];
+    let contacts = normals.map(|normal| ContactCone::new(normal, friction).unwrap());
+    for kind in [ConeKind::Exact, ConeKind::Kc, ConeKind::KcPlus, ConeKind::Pyramid(PyramidEdges::Eight)] {
+        let cone = kind.cone(&contacts[..3]);
+        let cut_all = || {
+            let headings = (0..64).map(|turn| Vector2::new(f64::from(turn - 32), 7.0).normalize());
+            headings.filter(|heading| !cone.takeoff_slopes(*heading).intersect(cone.landing_slopes(-heading)).is_empty()).count()
+        };
+        let (allocations, open) = quietest(cut_all);
+        assert_eq!(allocations, 0, "{kind:?}");
+        assert!(open > 0, "{kind:?}: no heading is open to both");
+    }
 }
 
 /// The fewest allocations of three rounds, and the result of that round: the test harness has its own thread, whose allocations

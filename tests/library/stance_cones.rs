@@ -235,7 +235,6 @@ fn the_sum_is_what_the_dual_cone_supports() {
 fn the_sum_is_what_the_dual_cone_supports_in_a_hundred_thousand_stances() {
     let seen = compare(100_000, 22);
     assert!(seen.between > 30_000 && seen.beyond_pairs > 500, "{seen:?}");
-    println!("{seen:?}");
 }
 
 fn is_inside(inner: SlopeInterval, outer: SlopeInterval, tolerance: f64) -> bool {
@@ -295,7 +294,8 @@ fn the_narrower_cones_are_inside() {
 #[test]
 #[ignore = "a hundred thousand stances"]
 fn the_narrower_cones_are_inside_in_a_hundred_thousand_stances() {
-    println!("{:?}", nested(100_000, 24));
+    let wider = nested(100_000, 24);
+    assert!(wider.into_iter().all(|count| count > 20_000), "{wider:?}");
 }
 
 /// For one contact every kind but the pyramids is the cone of the contact to the last bit.

@@ -157,6 +157,21 @@ impl ConeSum {
     ///
     /// # Arguments
     /// `heading`: the horizontal direction of travel, of length 1.
+    ///
+    /// # Returns
+    /// Both sides as (ahead, up). Only the directions count: the sides are of any length.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{ballistics::stance::{ConeSum, ContactCone}, world::FrictionCone};
+    /// use nalgebra::{Vector2, Vector3};
+    /// // Level ground with friction 1, and a wall across the heading with friction 1: 45 degrees beyond the vertical to 45 degrees below
+    /// // the horizontal.
+    /// let contacts = [Vector3::z(), Vector3::x()].map(|normal| ContactCone::new(normal, FrictionCone::new(1.0).unwrap()).unwrap());
+    /// let cut = ConeSum::new(&contacts).cut(Vector2::x());
+    /// assert!((cut.opening().unwrap().degrees() - 180.0).abs() < 1e-6);
+    /// assert!(cut.contains([1.0, -0.99]) && !cut.contains([1.0, -1.01]) && cut.contains([-0.99, 1.0]));
+    /// ```
     pub fn cut(&self, heading: Vector2<f64>) -> PlaneCut {
         let in_plane = |v: &Vector3<f64>| [v.x * heading.x + v.y * heading.y, v.z];
         match &self.extent {
@@ -214,10 +229,27 @@ impl ConeSum {
         }
     }
 
-    /// The slopes of the landing velocities ahead whose reverse lies inside.
+    /// The slopes of the landing velocities ahead whose reverse lies inside: `-v` in K (S eq. 3).
+    ///
+    /// For one contact these are the [`PreparedCone::slopes`] of the reversed normal to the last bit.
     ///
     /// # Arguments
     /// `heading`: the horizontal direction of travel, of length 1.
+    ///
+    /// # Returns
+    /// From minus infinity where straight up lies inside; empty where no direction of K points against the heading.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{ballistics::stance::{ConeSum, ContactCone}, world::FrictionCone};
+    /// use nalgebra::{Vector2, Vector3};
+    /// // Level ground with friction 0.5: a landing at a slope of -2 or steeper. A wall ahead, whose normal points back, stops any up to 0.5.
+    /// let cone = |normal| ContactCone::new(normal, FrictionCone::new(0.5).unwrap()).unwrap();
+    /// let [ground, wall] = [cone(Vector3::z()), cone(-Vector3::x())];
+    /// assert!((ConeSum::new(&[ground]).landing_slopes(Vector2::x()).upper + 2.0).abs() < 1e-15);
+    /// let both = ConeSum::new(&[ground, wall]).landing_slopes(Vector2::x());
+    /// assert!((both.upper - 0.5).abs() < 1e-15 && both.lower == f64::NEG_INFINITY);
+    /// ```
     #[inline]
     pub fn landing_slopes(&self, heading: Vector2<f64>) -> SlopeInterval {
         match self.cones.as_slice() {

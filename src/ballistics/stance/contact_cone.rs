@@ -66,4 +66,20 @@ impl ContactCone {
     pub const fn friction(&self) -> FrictionCone {
         self.friction
     }
+
+    /// The unit force of the cone that does most along a vector of any length other than 0.
+    ///
+    /// The vector itself if it lies in the cone, else the edge of the cone on its side.
+    pub(super) fn best(&self, along: Vector3<f64>) -> Vector3<f64> {
+        let (normal, mu) = (self.normal, self.friction.coefficient());
+        let up = along.dot(&normal);
+        let aside = along - normal * up;
+        let length = aside.norm();
+        if length <= mu * up {
+            return along / along.norm();
+        }
+        // A vector straight into the ground has no side: every edge does as little.
+        let side = if length > 0.0 { aside / length } else { Vector3::zeros() };
+        (normal + side * mu) / libm::hypot(1.0, mu)
+    }
 }

@@ -17,9 +17,18 @@
 mod cone_kind;
 mod cone_sum;
 mod contact_cone;
+mod foothold;
+mod force;
 mod plane_cut;
+mod spin;
+mod stroke;
+mod wrench;
 
 pub use cone_kind::{ConeKind, PyramidEdges};
 pub use cone_sum::ConeSum;
 pub use contact_cone::{ContactCone, InvalidContactCone};
+pub use foothold::{Bounds, Foothold};
+pub use force::{InvalidForce, Limb, greatest_force_n};
 pub use plane_cut::PlaneCut;
+pub use spin::{holds_upright, least_spin_m2_s, spin_free_cut};
+pub use stroke::{greatest_push_speed_m_s, push_force_n, push_slope};

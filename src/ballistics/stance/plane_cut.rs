@@ -23,6 +23,8 @@ impl PlaneCut {
     ///
     /// # Returns
     /// Up to infinity where straight up lies inside, from minus infinity where straight down does; empty where no direction points ahead.
+    /// Its [`angles`](SlopeInterval::angles) are the elevations for a report: 90 degrees where straight up lies inside or between the
+    /// sides, -90 where straight down does.
     ///
     /// # Examples
     /// ```
