@@ -194,6 +194,11 @@ impl Purpose {
         }
     }
 
+    /// Whether it answers for a robot with legs over a mesh.
+    pub(crate) const fn stands_on_legs(self) -> bool {
+        matches!(self, Self::Plan)
+    }
+
     /// Whether its paths are those of an objective within budgets, where the scenario has them.
     const fn plans_by_objective(self) -> bool {
         !matches!(self, Self::Hop | Self::Fan | Self::MapMesh)

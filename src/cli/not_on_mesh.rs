@@ -13,6 +13,12 @@ pub(crate) fn refuse(options: &[Given]) -> Result<(), Failure> {
     refuse_with(options, |_| LEAVE_OUT)
 }
 
+/// Refuses the first option that was given beside a robot with legs.
+pub(crate) fn refuse_for_legs(options: &[Given]) -> Result<(), Failure> {
+    let Some((option, _, what)) = options.iter().find(|(_, given, _)| *given) else { return Ok(()) };
+    Err(Failure::message(format!("{option}: found this option, which {what}, and robot.file names a robot with legs: {LEAVE_OUT}")))
+}
+
 fn refuse_with(options: &[Given], mend: impl Fn(&str) -> &'static str) -> Result<(), Failure> {
     let Some((option, _, what)) = options.iter().find(|(_, given, _)| *given) else { return Ok(()) };
     let mend = mend(what);

@@ -23,6 +23,8 @@ pub enum DocumentKind {
     Plan,
     /// A path over a mesh: [`MeshPlanAnswer`](super::MeshPlanAnswer).
     PlanMesh,
+    /// A path of a robot with legs: [`LegsPlanAnswer`](super::LegsPlanAnswer).
+    PlanLegs,
     /// A path of a scenario that drives: [`TravelAnswer`](super::TravelAnswer).
     PlanTravel,
     /// A path, beside the other files of a run: [`PlanAnswer`](super::PlanAnswer).
@@ -61,7 +63,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -69,6 +71,7 @@ impl DocumentKind {
         Self::CheckMesh,
         Self::Plan,
         Self::PlanMesh,
+        Self::PlanLegs,
         Self::PlanTravel,
         Self::Run,
         Self::RunMesh,
@@ -98,6 +101,7 @@ impl DocumentKind {
             Self::CheckMesh => "check-mesh",
             Self::Plan => "plan",
             Self::PlanMesh => "plan-mesh",
+            Self::PlanLegs => "plan-legs",
             Self::PlanTravel => "plan-travel",
             Self::Run => "run",
             Self::RunMesh => "run-mesh",

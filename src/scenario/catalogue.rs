@@ -2,8 +2,9 @@
 
 use super::Route;
 use crate::{
-    ballistics::TakeoffChoice,
+    ballistics::{TakeoffChoice, stance::ConeKind},
     graph::{Effort, ReliabilityUse},
+    ground::StandsUp,
     hop::Split,
     planner::{Amount, Objective, Travel, roadmap::RoadmapPlanner},
     uncertainty::{Distribution, Policy},
@@ -187,6 +188,15 @@ const CHOICES: [&str; 4] =
 const RELIABILITY_USES: [&str; 3] = [ReliabilityUse::ALL[0].name(), ReliabilityUse::ALL[1].name(), ReliabilityUse::ALL[2].name()];
 const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const DISTRIBUTIONS: [&str; 2] = [Distribution::ALL[0].name(), Distribution::ALL[1].name()];
+const CONES: [&str; 6] = [
+    ConeKind::ALL[0].name(),
+    ConeKind::ALL[1].name(),
+    ConeKind::ALL[2].name(),
+    ConeKind::ALL[3].name(),
+    ConeKind::ALL[4].name(),
+    ConeKind::ALL[5].name(),
+];
+const UPS: [&str; 2] = [StandsUp::ALL[0].name(), StandsUp::ALL[1].name()];
 const PLANNERS: [&str; 2] = [RoadmapPlanner::ALL[0].name(), RoadmapPlanner::ALL[1].name()];
 const TRAVELS: [&str; 3] = [Travel::ALL[0].name(), Travel::ALL[1].name(), Travel::ALL[2].name()];
 const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
@@ -194,7 +204,7 @@ const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 119] = [
+pub const CATALOGUE: [Key; 121] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -282,6 +292,19 @@ pub const CATALOGUE: [Key; 119] = [
         "share of the energy store that becomes motion, for the totals of energy; absent: 1",
     ),
     key("robot", "file", Kind::Text, "robot with legs, path from this file (docs/legs.md); [hopper] gives what it leaves open"),
+    key(
+        "robot",
+        "cone",
+        Kind::Word(&CONES),
+        "of a robot with legs: the cone of the directions in which its feet push: exact, their sum; kc, the one of Campana and others inside it; kc-plus, \
+         the widest about the same axis; pyramid-4, -8, -16, sums of pyramids of so many edges; absent: exact",
+    ),
+    key(
+        "robot",
+        "up",
+        Kind::Word(&UPS),
+        "of a robot with legs: up for its trunk where it stands: normal, along that of the ground; vertical; absent: normal",
+    ),
     key("surface", "friction_coefficient", Kind::Number { min: 0.0, max: 1e6 }, "cone about the surface normal"),
     key("surface", "takeoff_from_slope_deg", Kind::AngleRange, "take-off angles above the slope, degrees, instead of friction"),
     key("surface", "landing_from_slope_deg", Kind::AngleRange, "landing angles above the slope, degrees, instead of friction"),

@@ -2,14 +2,25 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Budget, DriveKeys, Route, Scenario, TerrainSource, UncertaintyKeys};
+use super::{Budget, DriveKeys, LegsKeys, Route, Scenario, TerrainSource, UncertaintyKeys};
 use crate::{
+    ballistics::stance::ConeKind,
     graph::{PointSpacing, ReliabilityUse},
+    ground::StandsUp,
     planner::{SearchedCommands, roadmap::RoadmapPlanner},
     quantity::{Angle, AngleInterval},
     terrain::{MapPlace, NoDataRule},
     world::{ClearanceRule, FaceGroup, Grip, RestSlope},
 };
+
+/// A robot with legs, with the keys that differ from their defaults.
+fn legs(keys: &LegsKeys, named: &dyn Fn(&std::path::Path) -> String) -> Value {
+    object([
+        ("file", keys.file.as_deref().map(|path| named(path).into())),
+        ("cone", (keys.cone != ConeKind::default()).then(|| keys.cone.name().into())),
+        ("up", (keys.up != StandsUp::default()).then(|| keys.up.name().into())),
+    ])
+}
 
 /// The scenario as used, defaults filled in, with the keys of [`CATALOGUE`](super::CATALOGUE):
 /// [`Entries::from_json`](super::Entries) reads it back as it was. Paths are `name`d by the caller, relative to the working folder.
@@ -17,7 +28,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     let mut tables = Map::new();
     tables.insert("body".to_owned(), body(scenario));
     tables.insert("hopper".to_owned(), hopper(scenario));
-    tables.insert("robot".to_owned(), object([("file", scenario.robot_file.as_deref().map(|path| named(path).into()))]));
+    tables.insert("robot".to_owned(), legs(&scenario.legs, named));
     tables.insert("surface".to_owned(), surface(scenario, named));
     tables.insert("contact".to_owned(), contact(scenario));
     tables.insert("terrain".to_owned(), terrain(scenario, named));

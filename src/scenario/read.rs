@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{
-    Budget, DriveKeys, Entries, MeshSearch, Place, ProblemKind, Route, ScenarioProblem, TerrainSource, UncertaintyKeys,
+    Budget, DriveKeys, Entries, LegsKeys, MeshSearch, Place, ProblemKind, Route, ScenarioProblem, TerrainSource, UncertaintyKeys,
     propulsion::{self, landing},
     terrain_source::{terrain, via},
 };
@@ -48,8 +48,8 @@ pub struct Scenario {
     pub body: BodyChoice,
     /// The robot.
     pub hopper: Hopper,
-    /// Path of the robot file, of a robot with legs, relative to the scenario's folder.
-    pub robot_file: Option<PathBuf>,
+    /// A robot with legs.
+    pub legs: LegsKeys,
     /// The ground's grip.
     pub surface: SurfaceProperties,
     /// What groups of faces of a mesh have of their own.
@@ -120,6 +120,7 @@ impl Scenario {
         let terrain = terrain(&mut entries);
         let via = via(&mut entries, terrain.as_ref());
         let route = super::route::route(&mut entries, terrain.as_ref());
+        let legs = super::legs::legs(&mut entries);
         let mesh_search = super::mesh_search::mesh_search(&mut entries, terrain.as_ref());
         let [friction_raster, keep_out] = overlays(&mut entries, &surface, terrain.as_ref());
         let derating = super::derating::derating(&mut entries, &hopper, &surface);
@@ -154,7 +155,7 @@ impl Scenario {
         Ok(Self {
             body,
             hopper,
-            robot_file: entries.text("robot", "file").map(PathBuf::from),
+            legs,
             surface,
             groups: entries.face_groups("surface", "group"),
             friction_raster,

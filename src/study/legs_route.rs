@@ -8,6 +8,10 @@ use super::{
     mesh_route::{answer, left_out},
     stance::{best_stance, with_robot},
 };
+#[cfg(feature = "plot")]
+use super::{captions::title, conditions};
+#[cfg(feature = "plot")]
+use crate::figure::{Caption, FigureError, MeshRouteFigure, MeshRouteLine, Picture, SeenFrom, draw_mesh_route};
 use crate::{
     ground::{NoFriction, Stance, StanceGround},
     path::{HopPath, StanceViolation, flown_by_stances, path_over_stances},
@@ -98,14 +102,13 @@ pub struct LegsRouted {
 /// [`LegsRouteError`].
 pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> Result<LegsRouted, LegsRouteError> {
     let LegsRouteQuestion { scenario, base } = question;
-    let file = base.join(scenario.robot_file.as_deref().unwrap_or_else(|| Path::new("")));
+    let file = base.join(scenario.legs.file.as_deref().unwrap_or_else(|| Path::new("")));
     let read = read_robot(&file)?;
     let with_limits = Scenario { hopper: with_robot(&scenario.hopper, &read.robot), ..scenario.clone() };
     let scenario = &with_limits;
     let MeshEnds { ground, scale, given_m, surface, mut warnings, .. } = mesh_ends(scenario, base, 0.0)?;
     warnings.extend(read.warnings);
-    let ground =
-        StanceGround::new(ground, read.robot, crate::ballistics::stance::ConeKind::Exact, crate::ground::StandsUp::Normal)?;
+    let ground = StanceGround::new(ground, read.robot, scenario.legs.cone, scenario.legs.up)?;
     let stance = |at: usize, end| {
         let found = best_stance(&ground, &surface[at], (None, None));
         found.best.map(|(stance, _)| stance).ok_or_else(|| LegsRouteError::NoStance {
@@ -167,6 +170,41 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
     };
     let robot_files = std::iter::once(file).chain(read.files).collect();
     Ok(LegsRouted { ground, grown, path, answer, warnings, robot_files })
+}
+
+#[cfg(feature = "plot")]
+impl LegsRouted {
+    /// The picture of the path of its root: an oblique view, a plan view and the table of its hops.
+    ///
+    /// # Errors
+    /// As [`draw_mesh_route`].
+    pub fn picture(&self, scenario: &Scenario, seen_from: SeenFrom) -> Result<Picture, FigureError> {
+        let [start, goal] = [self.grown.ends.0, self.grown.ends.1].map(|node| self.grown.roadmap.contact(node).pose().root_m);
+        let stances = self.answer.plan.roadmap.contacts;
+        let robot = self.ground.robot().name();
+        let result = self.path.as_ref().map_or_else(
+            || format!("{robot}: no path over these {stances} stances"),
+            |path| {
+                let (hops, time_s) = (path.hops.len(), path.totals.flight_time_s);
+                format!("{robot}: at most {hops} hops over these {stances} stances, {time_s:.2} s in flight")
+            },
+        );
+        let scenario = Scenario { hopper: *self.ground.mesh().envelope().hopper(), ..scenario.clone() };
+        draw_mesh_route(&MeshRouteFigure {
+            caption: Caption { title: title("Route of a robot with legs", &scenario), lines: vec![conditions(&scenario), result] },
+            mesh: self.ground.mesh().tree().mesh(),
+            seen_from,
+            cut_z_m: None,
+            start,
+            goal,
+            routes: self
+                .path
+                .iter()
+                .map(|path| MeshRouteLine { name: "", path, gravity_m_s2: self.ground.mesh().envelope().gravity_m_s2() })
+                .collect(),
+            nearest: self.answer.plan.gap.as_ref().map(|gap| gap.nearest_m.into()),
+        })
+    }
 }
 
 /// What a plan of a robot with legs assumes.

@@ -50,6 +50,7 @@ pub fn scenario_files(scenario: &Scenario, base: &Path) -> Vec<PathBuf> {
         }
         None => Vec::new(),
     };
+    files.extend(scenario.legs.file.as_ref().map(|path| base.join(path)));
     files.extend(Overlays::files(scenario).flat_map(|overlay| raster_files(&base.join(overlay))));
     files.extend(scenario.uncertainty.as_ref().and_then(|keys| keys.errors_file.as_ref()).map(|path| base.join(path)));
     files

@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 use crate::{
     arena::ArenaKeys,
     report::{
-        ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
-        MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer,
-        SimulateAnswer, SizeAnswer, StanceAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+        ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, LegsPlanAnswer,
+        MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer,
+        RequireAnswer, SimulateAnswer, SizeAnswer, StanceAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
     },
     scenario::{robot_schema, scenario_schema},
 };
@@ -60,6 +60,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Plan | DocumentKind::Run => derived::<PlanAnswer>(),
         DocumentKind::CheckMesh => derived::<MeshCheckAnswer>(),
         DocumentKind::PlanMesh | DocumentKind::RunMesh => derived::<MeshPlanAnswer>(),
+        DocumentKind::PlanLegs => derived::<LegsPlanAnswer>(),
         DocumentKind::PlanTravel => derived::<TravelAnswer>(),
         DocumentKind::Simulate => derived::<SimulateAnswer>(),
         DocumentKind::SimulateMesh => derived::<MeshSimulateAnswer>(),

@@ -13,6 +13,7 @@ pub(super) mod map;
 mod map_over_mesh;
 mod map_travel;
 pub(super) mod plan;
+mod plan_legs;
 mod plan_over_mesh;
 mod plan_travel;
 pub(super) mod require;

@@ -9,7 +9,9 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::{EndOptions, OwnKey, Source, apply_options, lacking_on, look_at_keys, read_source, relative_name, validated};
+use super::{
+    EndOptions, OwnKey, Source, apply_options, lacking_on, look_at_keys, read_source, relative_name, validated, validated_with_legs,
+};
 use crate::cli::{
     Failure,
     args::{CommonArgs, JourneyArgs, SearchArgs},
@@ -96,11 +98,14 @@ pub(crate) fn load_mesh_scenario(
     }
     let given = source.entries.clone();
     let (base, name) = (source.base, source.name);
+    let validated = if purpose.stands_on_legs() { validated_with_legs } else { validated };
     let scenario = validated(source.entries, &name, &source.text)?;
     // Two terrains would have been refused.
     let Some(TerrainSource::MeshInSpace { path, .. }) = &scenario.terrain else { return Ok(None) };
     let mesh = base.join(path);
-    let lacking = scenario.lacks_on_a_dem();
+    // A robot file may state the speeds.
+    let mut lacking = scenario.lacks_on_a_dem();
+    lacking.retain(|key| scenario.legs.file.is_none() || key.key.starts_with("surface."));
     if !lacking.is_empty() {
         return Err(Failure::message(format!("{name}: {}", lacking_on(&lacking, "a mesh"))));
     }

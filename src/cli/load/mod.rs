@@ -541,6 +541,11 @@ fn validated(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failu
         let help = "remove it from [robot]: [hopper] then states the limits of the point".to_owned();
         return Err(refused(vec![entries.file_problem(key, message, help)], name, text));
     }
+    validated_with_legs(entries, name, text)
+}
+
+/// The same where a robot with legs is answered for.
+fn validated_with_legs(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failure> {
     Scenario::new(entries).map_err(|problems| refused(problems, name, text))
 }
 

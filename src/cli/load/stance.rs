@@ -12,7 +12,9 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::{EndOptions, apply_options, forget_terrain, lacking_on, look_at_keys, option_source, relative_name, validated};
+use super::{
+    EndOptions, apply_options, forget_terrain, lacking_on, look_at_keys, option_source, relative_name, validated_with_legs,
+};
 use crate::cli::{
     Failure,
     args::{Position, StanceArgs},
@@ -72,13 +74,13 @@ pub(crate) fn load_stance(args: &StanceArgs) -> Result<StanceInput, Failure> {
     let scale = source.entries.mesh_scale();
     forget_terrain(&mut source.entries);
     look_at_keys(&mut source, false)?;
-    let scenario = validated(source.entries, &source.name, &source.text)?;
+    let scenario = validated_with_legs(source.entries, &source.name, &source.text)?;
     let lacking: Vec<_> = scenario.lacks_on_a_dem().into_iter().filter(|key| key.key.starts_with("surface.")).collect();
     if !lacking.is_empty() {
         let name = common.scenario.as_ref().map(|file| format!("{}: ", file.display())).unwrap_or_default();
         return Err(Failure::message(name + &lacking_on(&lacking, if is_mesh { "a mesh" } else { "a DEM" })));
     }
-    let named = args.robot.clone().or_else(|| scenario.robot_file.as_ref().map(|file| source.base.join(file)));
+    let named = args.robot.clone().or_else(|| scenario.legs.file.as_ref().map(|file| source.base.join(file)));
     let named = named.ok_or_else(|| {
         Failure::message(
             "found no robot, expected --robot FILE, or robot.file in the scenario: a robot file states trunk and limbs",

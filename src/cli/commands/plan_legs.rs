@@ -1,0 +1,41 @@
+//! `chta plan` of a robot with legs over a mesh.
+
+use chta::{
+    report::{DocumentKind, MapKnowledge, legs_plan_text, write_path_csv},
+    study::{LegsRouteQuestion, legs_route},
+};
+
+use crate::cli::{
+    Answer, Failure,
+    args::PlanArgs,
+    load::MeshPlanInput,
+    not_on_mesh,
+    output::{self, TableFormat},
+    progress::Progress,
+    views::{Files, Table, Views},
+};
+
+/// Plans a route of a robot with legs.
+pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
+    not_on_mesh::refuse_for_legs(&[
+        ("--front", args.front()?.is_some(), "searches hops against an amount for a point"),
+        ("--roadmap", args.roadmap.roadmap.is_some(), "reads contacts of a point"),
+        ("--roadmap-output", args.roadmap.roadmap_output.is_some(), "writes contacts of a point"),
+    ])?;
+    let plot = output::begin_picture("--plot", args.plot.as_deref())?;
+    let mut table = Table::begin(args.output.as_deref(), TableFormat::Csv)?;
+    let question = LegsRouteQuestion { scenario: &input.scenario, base: &input.base };
+    let routed = legs_route(question, &Progress::new(args.common.quiet)).map_err(|error| Failure::about(&input.mesh, &error))?;
+    output::warn_all(args.common.quiet, &routed.warnings);
+    let views = Views {
+        text: &|| legs_plan_text(&routed.answer),
+        json: &|| input.document(DocumentKind::PlanLegs, &routed.warnings, &routed.answer),
+        csv: &|out| write_path_csv(&routed.answer.plan.path, MapKnowledge::Metres, out),
+    };
+    let mut files = Files::default();
+    files.picture(plot, || Some(routed.picture(&input.scenario, args.view.direction())))?;
+    files.table(&mut table, &views)?;
+    files.finish()?;
+    views.show(args.answer.format, table.to_stdout)?;
+    Ok(Answer::of(routed.answer.plan.is_traversable()))
+}

@@ -1,0 +1,36 @@
+//! `[robot]`: a robot with legs, and how its stances are judged.
+
+use std::path::PathBuf;
+
+use super::{Entries, ProblemKind, read::find};
+use crate::{ballistics::stance::ConeKind, ground::StandsUp};
+
+/// A robot with legs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LegsKeys {
+    /// Path of the robot file, relative to the scenario's folder; `None`: the hopper is a point or a ball.
+    pub file: Option<PathBuf>,
+    /// Which cone stands for the sum of those of its feet.
+    pub cone: ConeKind,
+    /// Which way is up for its trunk.
+    pub up: StandsUp,
+}
+
+/// The keys, of which those beside the file need it.
+pub(super) fn legs(entries: &mut Entries) -> LegsKeys {
+    let keys = LegsKeys {
+        file: entries.text("robot", "file").map(PathBuf::from),
+        cone: find(&ConeKind::ALL, ConeKind::name, entries.text("robot", "cone")).unwrap_or_default(),
+        up: find(&StandsUp::ALL, StandsUp::name, entries.text("robot", "up")).unwrap_or_default(),
+    };
+    if keys.file.is_none() {
+        for name in ["cone", "up"] {
+            if entries.value("robot", name).is_some() {
+                let message = format!("robot.{name} is for robots with legs, and this scenario names none");
+                let help = "add robot.file = \"robot.toml\", or remove the key";
+                entries.problem(("robot", name), ProblemKind::Misplaced, message, help);
+            }
+        }
+    }
+    keys
+}
