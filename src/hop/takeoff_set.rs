@@ -170,6 +170,9 @@ fn all_limits(
         let bend = LimitInterval::new(Limit::Bend, SlopeInterval::EMPTY, Some(Shortfall::Bend { x_m }));
         found.push(LimitInterval { vertex: Some(vertex), ..bend });
     }
+    if let Some(layer) = test.chain().geometry().layer_refusing_flight(takeoff.point.x_m, landing.point.x_m) {
+        found.push(LimitInterval::new(Limit::Layer(layer), SlopeInterval::EMPTY, Some(Shortfall::Flight { layer })));
+    }
     found.push(terrain(test, takeoff, landing, sight));
     found.sort_by_key(|limit| limit.limit);
     found

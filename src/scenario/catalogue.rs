@@ -59,6 +59,8 @@ pub enum Kind {
     SlipCurve,
     /// Tables of groups of faces, by their names.
     FaceGroups,
+    /// A table of a layer; its name is any, so that the key of the catalogue is called NAME.
+    Layer,
     /// Any text.
     Text,
 }
@@ -92,7 +94,7 @@ impl Key {
 
     /// The known key of this table and name.
     pub fn find(table: &str, name: &str) -> Option<&'static Self> {
-        CATALOGUE.iter().find(|key| key.table == table && key.name == name)
+        CATALOGUE.iter().find(|key| key.table == table && (key.name == name || (key.kind == Kind::Layer && !name.is_empty())))
     }
 }
 
@@ -143,6 +145,10 @@ impl Kind {
                                  from 0 to 90 degrees, or inf) or keep_out (true or false), such as [surface.group.ice]"
                     .to_owned()
             }
+            Self::Layer => {
+                "a table with raster (a path), min, max or equals (numbers) and applies_to (contact, flight or both), such as [layer.sun]"
+                    .to_owned()
+            }
             Self::Text => "a text in quotes, not empty".to_owned(),
         }
     }
@@ -191,7 +197,7 @@ const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 118] = [
+pub const CATALOGUE: [Key; 119] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -304,6 +310,12 @@ pub const CATALOGUE: [Key; 118] = [
         "group",
         Kind::FaceGroups,
         "friction, rest slope and keep-out of groups, objects or materials of an OBJ, [surface.group.NAME]; for hops over a mesh alone",
+    ),
+    key(
+        "layer",
+        "NAME",
+        Kind::Layer,
+        "raster on the dem's map whose condition restricts contacts or flights, [layer.NAME], any number of them; no data does not hold",
     ),
     key(
         "contact",
@@ -639,7 +651,7 @@ mod tests {
             "seed",
         ];
         for key in &CATALOGUE {
-            let number = !matches!(key.kind, Kind::Word(_) | Kind::Text | Kind::Flag | Kind::FaceGroups);
+            let number = !matches!(key.kind, Kind::Word(_) | Kind::Text | Kind::Flag | Kind::FaceGroups | Kind::Layer);
             assert!(
                 !number || pure.contains(&key.name) || units.iter().any(|unit| key.name.ends_with(unit)),
                 "{} has no unit",

@@ -18,6 +18,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     tables.insert("body".to_owned(), body(scenario));
     tables.insert("hopper".to_owned(), hopper(scenario));
     tables.insert("surface".to_owned(), surface(scenario, named));
+    tables.insert("layer".to_owned(), super::layers::document(&scenario.layers, named));
     tables.insert("contact".to_owned(), contact(scenario));
     tables.insert("terrain".to_owned(), terrain(scenario, named));
     tables.insert("search".to_owned(), search(scenario));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{
-    Budget, DriveKeys, Entries, MeshSearch, Place, ProblemKind, Route, ScenarioProblem, TerrainSource, UncertaintyKeys,
+    Budget, DriveKeys, Entries, LayerKeys, MeshSearch, Place, ProblemKind, Route, ScenarioProblem, TerrainSource, UncertaintyKeys,
     propulsion::{self, landing},
     terrain_source::{terrain, via},
 };
@@ -56,6 +56,8 @@ pub struct Scenario {
     pub friction_raster: Option<PathBuf>,
     /// Path of the keep-out zones, relative to the scenario's folder.
     pub keep_out: Option<PathBuf>,
+    /// The layers, in the order of their names.
+    pub layers: Vec<LayerKeys>,
     /// The terrain, if the scenario names one.
     pub terrain: Option<TerrainSource>,
     /// Whether a map whose scale along the transect is off by over 1 % is accepted.
@@ -120,6 +122,7 @@ impl Scenario {
         let route = super::route::route(&mut entries, terrain.as_ref());
         let mesh_search = super::mesh_search::mesh_search(&mut entries, terrain.as_ref());
         let [friction_raster, keep_out] = overlays(&mut entries, &surface, terrain.as_ref());
+        let layers = super::layers::layers(&mut entries, terrain.as_ref());
         let derating = super::derating::derating(&mut entries, &hopper, &surface);
         let drive = super::drive::drive(&mut entries, terrain.as_ref(), route, hopper.limits());
         let drives = drive.as_ref().is_some_and(|keys| keys.travel.drives());
@@ -156,6 +159,7 @@ impl Scenario {
             groups: entries.face_groups("surface", "group"),
             friction_raster,
             keep_out,
+            layers,
             terrain,
             accept_map_scale: entries.flag("terrain", "accept_map_scale"),
             no_data: entries.no_data("terrain", "no_data"),

@@ -45,7 +45,8 @@ fn key_of(limit: Limit, scenario: &Scenario) -> Option<&'static str> {
         | Limit::TakeoffSpeedLevels
         | Limit::TakeoffAngleStep
         | Limit::TakeoffSpeedStep
-        | Limit::HeadingStep => None,
+        | Limit::HeadingStep
+        | Limit::Layer(_) => None,
     }
 }
 

@@ -24,9 +24,9 @@ use crate::{
     quantity::MapPoint,
     scenario::{Route, Scenario, TerrainSource},
     terrain::{
-        self, CoordinateSystem, Dem, DemOptions, Ellipsoid, FrictionRaster, KeepOut, MapBounds, MapPlace, MapProjection,
+        self, CoordinateSystem, Dem, DemOptions, Ellipsoid, FrictionRaster, KeepOut, Layer, MapBounds, MapLayers, MapPlace, MapProjection,
         NoDataRule, OverlaidDem, OverlayEffect, Profile, Surroundings, TerrainError, check_scale, read_friction_raster,
-        read_keep_out, read_mesh_with, slice_legs, slice_mesh,
+        read_keep_out, read_layer, read_mesh_with, slice_legs, slice_mesh,
     },
     uncertainty::UncertaintyProblem,
     world::{Derating, FrictionCone},
@@ -455,7 +455,9 @@ impl Overlays {
     ) -> Result<Self, TerrainError> {
         let raster = scenario.friction_raster.as_deref().map(|path| read_friction_raster(&base.join(path), coordinates));
         let keep_out = scenario.keep_out.as_deref().map(|path| read_keep_out(&base.join(path), coordinates, bounds));
-        let overlays = terrain::Overlays::new(raster.transpose()?, keep_out.transpose()?);
+        let layers = scenario.layers.iter().map(|layer| read_layer(&base.join(&layer.raster), layer.rule, coordinates));
+        let layers = MapLayers::new(layers.collect::<Result<_, _>>()?);
+        let overlays = terrain::Overlays::new(raster.transpose()?, keep_out.transpose()?).with_layers(layers);
         Ok(Self { constant: friction(scenario), overlays: Arc::new(overlays) })
     }
 
@@ -472,7 +474,8 @@ impl Overlays {
 
     /// The overlay files of a scenario, relative to its folder.
     pub fn files(scenario: &Scenario) -> impl Iterator<Item = &Path> {
-        [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
+        let zones = [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref);
+        zones.chain(scenario.layers.iter().map(|layer| layer.raster.as_path()))
     }
 
     /// A warning for each overlay without effect on a DEM of these bounds.
@@ -480,13 +483,15 @@ impl Overlays {
         let raster =
             self.overlays.friction().filter(|raster| !raster.covers(bounds)).map(|raster| raster.without_effect("the DEM"));
         let keep_out = self.overlays.keep_out().filter(|zones| !zones.meets(bounds)).map(|zones| zones.without_effect("the DEM"));
-        self.not_compared().chain(raster).chain(keep_out).collect()
+        let layers = self.overlays.layers().iter().filter_map(|layer| layer.without_choice(bounds, "the DEM"));
+        self.not_compared().chain(raster).chain(keep_out).chain(layers).collect()
     }
 
     /// A warning for each overlay whose map could not be compared with the terrain's.
     fn not_compared(&self) -> impl Iterator<Item = String> + '_ {
         let raster = self.overlays.friction().and_then(FrictionRaster::not_compared);
-        raster.into_iter().chain(self.overlays.keep_out().and_then(KeepOut::not_compared)).map(str::to_owned)
+        let layers = self.overlays.layers().iter().filter_map(Layer::not_compared);
+        raster.into_iter().chain(self.overlays.keep_out().and_then(KeepOut::not_compared)).chain(layers).map(str::to_owned)
     }
 
     /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones, and a warning for each overlay
@@ -515,7 +520,7 @@ impl Overlays {
                 .to_owned()
         });
         let warnings = self.not_compared().chain(raster).chain(keep_out).chain(replaced).collect();
-        Ok((PolygonalChain::from_legs(&legs, constant)?, warnings))
+        Ok((PolygonalChain::from_legs(&legs, constant)?.with_layers(self.overlays.layers()), warnings))
     }
 }
 

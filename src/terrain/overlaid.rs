@@ -1,15 +1,16 @@
-//! A DEM with its overlays: friction by position, and keep-out zones without take-offs and landings.
+//! A DEM with its overlays: friction by position, keep-out zones without take-offs and landings, and layers with conditions.
 
 use std::sync::Arc;
 
-use super::{Dem, FrictionRaster, KeepOut, Profile, TerrainError, slice};
+use super::{Dem, FrictionRaster, KeepOut, MapLayers, Profile, TerrainError, slice};
 use crate::{quantity::MapPoint, world::FrictionCone};
 
-/// The overlays of a terrain: a friction raster and keep-out zones; either may be absent.
+/// The overlays of a terrain: a friction raster, keep-out zones and layers; any may be absent.
 #[derive(Clone, Debug, Default)]
 pub struct Overlays {
     friction: Option<FrictionRaster>,
     keep_out: Option<KeepOut>,
+    layers: MapLayers,
 }
 
 /// Which overlays have an effect on a profile.
@@ -23,13 +24,19 @@ pub struct OverlayEffect {
 
 impl Overlays {
     /// The overlays from a friction raster and keep-out zones.
-    pub const fn new(friction: Option<FrictionRaster>, keep_out: Option<KeepOut>) -> Self {
-        Self { friction, keep_out }
+    pub fn new(friction: Option<FrictionRaster>, keep_out: Option<KeepOut>) -> Self {
+        Self { friction, keep_out, layers: MapLayers::default() }
+    }
+
+    /// The same with layers.
+    #[must_use]
+    pub fn with_layers(self, layers: MapLayers) -> Self {
+        Self { layers, ..self }
     }
 
     /// The same overlays, of whose friction a share counts.
     pub(crate) fn with_friction_share(&self, share: f64) -> Self {
-        Self { friction: self.friction.as_ref().map(|raster| raster.with_share(share)), keep_out: self.keep_out.clone() }
+        Self { friction: self.friction.as_ref().map(|raster| raster.with_share(share)), ..self.clone() }
     }
 
     /// The friction raster.
@@ -42,7 +49,12 @@ impl Overlays {
         self.keep_out.as_ref()
     }
 
-    /// Adds both to a profile: friction and zones of its facets, with additional points where borders cross it.
+    /// The layers.
+    pub const fn layers(&self) -> &MapLayers {
+        &self.layers
+    }
+
+    /// Adds friction raster and zones to a profile: friction and zones of its facets, with additional points where borders cross it.
     ///
     /// `constant` is the friction where the raster has no data.
     ///

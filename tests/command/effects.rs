@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 117] = [
+const TELLING: [(&str, &str); 118] = [
     ("body.name", "moon"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -46,6 +46,7 @@ const TELLING: [(&str, &str); 117] = [
     ("surface.friction_raster", "none.tif"),
     ("surface.takeoff_from_slope_deg", "[60, 90]"),
     ("surface.landing_from_slope_deg", "[-90, -60]"),
+    ("layer.NAME", "{ raster = \"none.tif\", min = 1 }"),
     ("contact.restitution_normal", "0.7"),
     ("contact.restitution_tangential", "0.9"),
     ("contact.settle_speed_m_s", "0.4"),
