@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     ground::{MapPosition, NodeLattice, OverlayTable, Post},
-    terrain::{OverlaidDem, Overlays},
+    terrain::OverlaidDem,
 };
 
 /// The limits beside those of slopes, for legs between posts.
@@ -50,16 +50,18 @@ impl<'a> Extras<'a> {
     pub(super) fn new(drive: &'a DriveGround<'a>, lattice: NodeLattice, offsets: &[(i32, i32)]) -> Option<Self> {
         let terrain = drive.ground().terrain();
         let limits = drive.rover().limits();
-        let keep_out = terrain.overlays().keep_out();
+        let keeps_out = terrain.overlays().zones().next().is_some();
         let layers = terrain.overlays().layers().iter().any(|layer| layer.rule().on_contact);
-        if keep_out.is_none() && !layers && limits.step_max_m.is_none() && limits.roughness_max_m.is_none() {
+        if !keeps_out && !layers && limits.step_max_m.is_none() && limits.roughness_max_m.is_none() {
             return None;
         }
-        let zones = keep_out.map_or(Zones::None, |zones| {
-            let alone = OverlaidDem::new(terrain.shared_dem(), Overlays::new(None, Some(zones.clone())));
+        let zones = if keeps_out {
+            let alone = OverlaidDem::new(terrain.shared_dem(), terrain.overlays().zones_alone());
             let table = OverlayTable::new(&alone, None).ok().flatten();
             table.map_or(Zones::EachLeg, |table| Zones::Table(Box::new(table)))
-        });
+        } else {
+            Zones::None
+        };
         let base_m = limits.wheelbase_m.filter(|_| limits.step_max_m.is_some());
         let map = terrain.dem().georeference();
         let wheels = base_m.map_or_else(Vec::new, |base_m| {

@@ -174,9 +174,10 @@ impl<'a> DriveGround<'a> {
 
     /// Lays the keep-out zones over a slice and refuses one that enters them.
     fn keep_out(&self, profile: &mut Profile) -> Result<(), DriveRefusal> {
-        let Some(zones) = self.ground.terrain().overlays().keep_out() else { return Ok(()) };
-        // A mask that does not cover the leg says nothing of it: what is not known is not allowed.
-        zones.mark(profile).map_err(|_| DriveRefusal::KeepOut { at_m: 0.0 })?;
+        for zones in self.ground.terrain().overlays().zones() {
+            // A mask that does not cover the leg says nothing of it: what is not known is not allowed.
+            zones.mark(profile).map_err(|_| DriveRefusal::KeepOut { at_m: 0.0 })?;
+        }
         match profile.facets.iter().position(|facet| facet.keep_out) {
             Some(piece) => Err(DriveRefusal::KeepOut { at_m: profile.points[piece].x_m }),
             None => Ok(()),

@@ -27,16 +27,8 @@ pub enum DriveLimit {
 
 impl DriveLimit {
     /// All of them, in the order of testing.
-    pub const ALL: [Self; 8] = [
-        Self::Ground,
-        Self::KeepOut,
-        Self::Layer,
-        Self::SlopeUp,
-        Self::SlopeDown,
-        Self::CrossSlope,
-        Self::Step,
-        Self::Roughness,
-    ];
+    pub const ALL: [Self; 8] =
+        [Self::Ground, Self::KeepOut, Self::Layer, Self::SlopeUp, Self::SlopeDown, Self::CrossSlope, Self::Step, Self::Roughness];
 
     /// The name in messages and results.
     ///

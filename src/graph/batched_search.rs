@@ -518,7 +518,7 @@ mod tests {
             let (mut goals, mut same) = (Goals::new(&[at(20), at(45)]), Goals::new(&[at(20), at(45)]));
             one.run(&at(start), &mut goals, &meter).unwrap();
             fresh.run(&at(start), &mut same, &meter).unwrap();
-            assert_eq!((one.labels.clone(), one.tally, goals.labels()), (fresh.labels, fresh.tally, same.labels()));
+            assert_eq!((one.labels.clone(), one.tally.clone(), goals.labels()), (fresh.labels, fresh.tally, same.labels()));
         }
     }
 }

@@ -212,8 +212,10 @@ impl ChainGround {
         let checked = self.check_segment(segment, contact, direction);
         // A hopper that stands where a layer does not hold may leave, as at a start.
         let layer = self.test.chain().geometry().layer_refusing_contact(at.point.x_m).filter(|_| contact == Contact::Landing);
+        if let (Ok(_), Some(layer)) = (checked, layer) {
+            return Err(GroundRefusal::Layer(layer));
+        }
         match (checked, segment) {
-            (Ok(_), _) if let Some(layer) = layer => Err(GroundRefusal::Layer(layer)),
             (Err(GroundRefusal::NoGround | GroundRefusal::KeepOut | GroundRefusal::TooSteep { .. }), _) | (_, None) => checked,
             (_, Some(id)) => self.footprint_refusal(at, id).map_or(checked, |refusal| Err(GroundRefusal::Footprint(refusal))),
         }

@@ -18,7 +18,8 @@ use crate::{
     hop::HopTest,
     quantity::{ChainPoint, MapPoint, SegmentId, SlopeInterval, VertexId},
     terrain::{
-        FootprintFit, FootprintGap, MapLayers, OverlaidDem, Profile, ProfileFacet, ProfilePoint, Surroundings, TerrainError, Triangles,
+        FootprintFit, FootprintGap, MapLayers, OverlaidDem, Profile, ProfileFacet, ProfilePoint, Surroundings, TerrainError,
+        Triangles,
     },
     world::{Contact, Direction, FrictionCone, Gravity, Hopper, RestSlope, SurfaceProperties},
 };

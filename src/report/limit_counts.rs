@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::{graph::RefusalCounts, world::{LayerName, Limit}};
+use crate::{
+    graph::RefusalCounts,
+    world::{LayerName, Limit},
+};
 
 /// The number of refusals by limit, in the order of the limits' names; a limit that refuses nothing is absent. In JSON an object.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

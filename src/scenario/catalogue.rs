@@ -83,7 +83,9 @@ impl Key {
     pub fn names_a_file(&self) -> bool {
         matches!(
             (self.table, self.name),
-            ("terrain", "dem" | "mesh" | "chain") | ("surface", "friction_raster" | "keep_out") | ("uncertainty", "errors")
+            ("terrain", "dem" | "mesh" | "chain")
+                | ("surface", "friction_raster" | "keep_out" | "keep_in")
+                | ("uncertainty", "errors")
         )
     }
 
@@ -197,7 +199,7 @@ const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 119] = [
+pub const CATALOGUE: [Key; 120] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -304,6 +306,12 @@ pub const CATALOGUE: [Key; 119] = [
         "keep_out",
         Kind::Text,
         "GeoJSON polygons or mask raster on the dem's map, path from this file: no take-off, no landing",
+    ),
+    key(
+        "surface",
+        "keep_in",
+        Kind::Text,
+        "GeoJSON polygons or mask raster on the dem's map, path from this file: take-off and landing nowhere else",
     ),
     key(
         "surface",

@@ -131,6 +131,7 @@ fn surface(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         ("group", (!scenario.groups.is_empty()).then(|| scenario.groups.iter().map(face_group).collect::<Map<_, _>>().into())),
         ("friction_raster", scenario.friction_raster.as_deref().map(|path| named(path).into())),
         ("keep_out", scenario.keep_out.as_deref().map(|path| named(path).into())),
+        ("keep_in", scenario.keep_in.as_deref().map(|path| named(path).into())),
     ])
 }
 

@@ -25,7 +25,10 @@ pub(super) const LAYER_KEYS: [(&str, &str); 5] = [
     ("min", "the layer holds where the raster's value is at least this"),
     ("max", "the layer holds where the raster's value is at most this"),
     ("equals", "the layer holds where the raster's value is this, as 255 where gdal_viewshed sees"),
-    ("applies_to", "contact: take-offs, landings and driven ground; flight: all ground flown over; or a list of both; absent: contact"),
+    (
+        "applies_to",
+        "contact: take-offs, landings and driven ground; flight: all ground flown over; or a list of both; absent: contact",
+    ),
 ];
 
 /// The words of `applies_to`.
@@ -56,7 +59,8 @@ pub(super) fn layers(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
 /// One layer, or what is wrong with it and how to mend it.
 fn layer(name: &str, table: &toml::Table) -> Result<LayerKeys, (String, String)> {
     let known = LayerName::new(name).ok_or_else(|| {
-        let message = format!("layer.{name} has a name that a limit cannot have, expected 1 to 64 of the letters a to z, digits, _ and -");
+        let message =
+            format!("layer.{name} has a name that a limit cannot have, expected 1 to 64 of the letters a to z, digits, _ and -");
         (message, "rename the layer, such as [layer.sun]".to_owned())
     })?;
     if let Some(unknown) = table.keys().find(|key| LAYER_KEYS.iter().all(|(known, _)| known != key)) {
@@ -98,7 +102,8 @@ fn layer(name: &str, table: &toml::Table) -> Result<LayerKeys, (String, String)>
     let [on_contact, on_flight] = match table.get("applies_to") {
         None => [true, false],
         Some(value) => {
-            let words = value.as_array().map_or_else(|| vec![value.as_str()], |words| words.iter().map(toml::Value::as_str).collect());
+            let words =
+                value.as_array().map_or_else(|| vec![value.as_str()], |words| words.iter().map(toml::Value::as_str).collect());
             let are_known = !words.is_empty() && words.iter().all(|word| word.is_some_and(|word| APPLIES_TO.contains(&word)));
             if !are_known {
                 let message = format!("layer.{name}.applies_to is {value}, expected \"contact\", \"flight\" or a list of both");

@@ -10,6 +10,7 @@ use crate::{quantity::MapPoint, world::FrictionCone};
 pub struct Overlays {
     friction: Option<FrictionRaster>,
     keep_out: Option<KeepOut>,
+    keep_in: Option<KeepOut>,
     layers: MapLayers,
 }
 
@@ -18,14 +19,22 @@ pub struct Overlays {
 pub struct OverlayEffect {
     /// The raster gives the friction of a part of the profile.
     pub friction: bool,
-    /// A part of the profile lies in a zone.
+    /// A part of the profile lies in a keep-out zone.
     pub keep_out: bool,
+    /// A part of the profile lies outside the keep-in zones.
+    pub keep_in: bool,
 }
 
 impl Overlays {
     /// The overlays from a friction raster and keep-out zones.
     pub fn new(friction: Option<FrictionRaster>, keep_out: Option<KeepOut>) -> Self {
-        Self { friction, keep_out, layers: MapLayers::default() }
+        Self { friction, keep_out, ..Self::default() }
+    }
+
+    /// The same with keep-in zones, of [`read_keep_in`](super::read_keep_in).
+    #[must_use]
+    pub fn with_keep_in(self, keep_in: Option<KeepOut>) -> Self {
+        Self { keep_in, ..self }
     }
 
     /// The same with layers.
@@ -49,6 +58,21 @@ impl Overlays {
         self.keep_out.as_ref()
     }
 
+    /// The keep-in zones.
+    pub const fn keep_in(&self) -> Option<&KeepOut> {
+        self.keep_in.as_ref()
+    }
+
+    /// All zones, of both kinds.
+    pub fn zones(&self) -> impl Iterator<Item = &KeepOut> {
+        self.keep_out.iter().chain(&self.keep_in)
+    }
+
+    /// The same zones alone.
+    pub(crate) fn zones_alone(&self) -> Self {
+        Self { keep_out: self.keep_out.clone(), keep_in: self.keep_in.clone(), ..Self::default() }
+    }
+
     /// The layers.
     pub const fn layers(&self) -> &MapLayers {
         &self.layers
@@ -68,6 +92,9 @@ impl Overlays {
         if let Some(zones) = &self.keep_out {
             effect.keep_out = zones.mark(profile)?;
         }
+        if let Some(zones) = &self.keep_in {
+            effect.keep_in = zones.mark(profile)?;
+        }
         Ok(effect)
     }
 
@@ -76,9 +103,9 @@ impl Overlays {
         self.friction.as_ref().and_then(|raster| raster.at(at))
     }
 
-    /// Whether a position lies in a keep-out zone.
+    /// Whether a position lies in a keep-out zone or outside the keep-in zones.
     pub fn keeps_out(&self, at: MapPoint) -> bool {
-        self.keep_out.as_ref().is_some_and(|zones| zones.keeps_out(at))
+        self.zones().any(|zones| zones.keeps_out(at))
     }
 }
 

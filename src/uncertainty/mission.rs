@@ -179,8 +179,8 @@ impl fmt::Write for Sink {
 fn limits_text(out: &mut Sink, ground: &DemGround) -> fmt::Result {
     let overlays = ground.terrain().overlays();
     let friction = overlays.friction().map(FrictionRaster::content);
-    let keep_out = overlays.keep_out().map(KeepOut::content);
-    write!(out, "{:?}{:?}{friction:?}{keep_out:?}", ground.envelope(), ground.surface())?;
+    let zones: Vec<_> = overlays.zones().map(KeepOut::content).collect();
+    write!(out, "{:?}{:?}{friction:?}{zones:?}", ground.envelope(), ground.surface())?;
     for layer in overlays.layers().iter() {
         write!(out, "{:?}{:?}", layer.rule(), layer.raster())?;
     }

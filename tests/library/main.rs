@@ -38,6 +38,7 @@ mod graph;
 mod heading_steps;
 mod layers;
 mod map_equality;
+mod map_layers;
 mod map_nodes;
 mod map_objectives;
 mod map_projection;

@@ -29,7 +29,7 @@ fn over(text: &str) -> String {
 fn is_off_a_mesh(key: &Key) -> bool {
     matches!(
         (key.table, key.name),
-        ("surface", "keep_out" | "friction_raster")
+        ("surface", "keep_out" | "keep_in" | "friction_raster")
             | ("layer", _)
             | ("hopper", "footprint_m" | "roughness_max_m")
             | ("contact", _)
@@ -140,7 +140,7 @@ fn toml() -> impl Strategy<Value = String> {
             ("terrain", "mesh" | "mesh_scale") => ground == 3,
             ("terrain", "start_m" | "goal_m" | "via_m") => (ground == 1 && !degrees) || ground == 3,
             ("terrain", "start_lonlat_deg" | "goal_lonlat_deg" | "via_lonlat_deg") => ground == 1 && degrees,
-            ("surface", "keep_out") | ("layer", _) => ground != 2,
+            ("surface", "keep_out" | "keep_in") | ("layer", _) => ground != 2,
             // Random speeds exclude each other more often than not.
             ("hopper", "takeoff_speed_min_m_s") => !points && degrees,
             ("hopper", "takeoff_speed_levels_m_s") => !points && !degrees,

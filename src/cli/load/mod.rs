@@ -224,7 +224,7 @@ fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends
         for key in SLICED_TERRAIN {
             source.entries.forget("terrain", key);
         }
-        for key in ["friction_raster", "keep_out"] {
+        for key in ["friction_raster", "keep_out", "keep_in"] {
             if source.entries.forget("surface", key) {
                 let warning = format!("surface.{key} is laid over terrain when it is sliced: for a chain its own columns count");
                 output::warn(common.quiet, &warning);

@@ -147,8 +147,21 @@ impl PostHops {
         let within_reach = Vec::new();
         let clearance = ground.envelope().clearance();
         let by_vertices = lattice.per_post > 1 && clearance.height_m() > 0.0 && !clearance.has_kinks();
-        let mut hops =
-            Self { ground, surface, scale, lattice, table, facets, overlays, footings, refused, grip, within_reach, coarse, by_vertices };
+        let mut hops = Self {
+            ground,
+            surface,
+            scale,
+            lattice,
+            table,
+            facets,
+            overlays,
+            footings,
+            refused,
+            grip,
+            within_reach,
+            coarse,
+            by_vertices,
+        };
         hops.set_reach()?;
         Ok(hops)
     }

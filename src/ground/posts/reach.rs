@@ -196,7 +196,7 @@ impl PostHops {
         let finer = if lattice.per_post > 1 { size_of::<f64>() * nodes } else { 0 };
         let (down, across) = lattice.blocks();
         let overlays = ground.terrain().overlays();
-        let has_overlays = overlays.friction().is_some() || overlays.keep_out().is_some();
+        let has_overlays = overlays.friction().is_some() || overlays.zones().next().is_some();
         let facets = 3 * posts;
         let footings = if ground.footprint.is_some() { nodes } else { 0 };
         let (overlay, overlay_preparation) = if has_overlays { OverlayTable::bytes(posts) } else { (0, 0) };

@@ -183,8 +183,7 @@ impl Layer {
         }
         rows.into_iter().all(|row| {
             let within = track.shares(1, as_f64(row) - ON_A_BORDER, as_f64(row + 1) + ON_A_BORDER);
-            within.0 > within.1
-                || cells_in(track.span(0, within), counts[0]).is_some_and(|cols| self.refused_in(row, &cols) == 0)
+            within.0 > within.1 || cells_in(track.span(0, within), counts[0]).is_some_and(|cols| self.refused_in(row, &cols) == 0)
         })
     }
 
@@ -192,7 +191,8 @@ impl Layer {
     pub(crate) fn refused_shares(&self, from: MapPoint, to: MapPoint) -> Vec<(f64, f64)> {
         let track = self.track(from, to);
         let [cols, rows] = [self.raster.cols(), self.raster.rows()];
-        let [across, down] = [(0, cols), (1, rows)].map(|(axis, count)| track.shares(axis, -ON_A_BORDER, as_f64(count) + ON_A_BORDER));
+        let [across, down] =
+            [(0, cols), (1, rows)].map(|(axis, count)| track.shares(axis, -ON_A_BORDER, as_f64(count) + ON_A_BORDER));
         let on = (across.0.max(down.0), across.1.min(down.1));
         if on.0 > on.1 {
             return vec![(0.0, 1.0)];
@@ -229,10 +229,12 @@ impl Layer {
         let named = || format!("{WHAT} {} '{}'", self.rule.name, name_of(&self.path));
         let track = self.track(bounds.min, bounds.max);
         let (rows, cols) = (self.raster.rows(), self.raster.cols());
-        let (Some(down), Some(across)) = (cells_in(track.span(1, (0.0, 1.0)), rows), cells_in(track.span(0, (0.0, 1.0)), cols)) else {
-            return cell_bounds(&self.raster).meets(bounds).then(|| {
-                format!("{} covers only a part of {on}: beyond it nothing is known, so that it refuses there", named())
-            }).or_else(|| Some(format!("{} does not lie on {on}, so that it refuses everything there", named())));
+        let (Some(down), Some(across)) = (cells_in(track.span(1, (0.0, 1.0)), rows), cells_in(track.span(0, (0.0, 1.0)), cols))
+        else {
+            return cell_bounds(&self.raster)
+                .meets(bounds)
+                .then(|| format!("{} covers only a part of {on}: beyond it nothing is known, so that it refuses there", named()))
+                .or_else(|| Some(format!("{} does not lie on {on}, so that it refuses everything there", named())));
         };
         let (cells, refused) = down.fold((0, 0), |(cells, refused), row| {
             (cells + across.end() + 1 - across.start(), refused + self.refused_in(row, &across) as usize)

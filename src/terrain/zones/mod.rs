@@ -21,7 +21,7 @@ mod same_map;
 mod vector;
 
 pub use friction::{FrictionRaster, read_friction_raster};
-pub use keep_out::{KeepOut, read_keep_out};
+pub use keep_out::{KeepOut, read_keep_in, read_keep_out};
 pub use layer::{Layer, LayerCondition, LayerRule, MapLayers, read_layer};
 pub use vector::VectorFormat;
 
