@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     quantity::MapPoint,
-    terrain::{CoordinateSystem, Dem, MapBounds, TerrainError, read_dem},
+    terrain::{CoordinateSystem, Dem, DemOptions, MapBounds, TerrainError},
     world::LayerName,
 };
 
@@ -106,7 +106,7 @@ pub struct Layer {
 /// ```
 pub fn read_layer(path: &Path, rule: LayerRule, coordinates: Option<&CoordinateSystem>) -> Result<Layer, TerrainError> {
     let failed = |problem: String| TerrainError::Overlay { what: WHAT, path: path.to_path_buf(), problem };
-    let raster = read_dem(path).map_err(|error| failed(of_raster(error)))?;
+    let raster = DemOptions::default().of_any_unit().read(path).map_err(|error| failed(of_raster(error)))?;
     let same = same_map::of_raster(&raster.georeference().coordinate_system, coordinates).map_err(|difference| {
         failed(format!("the raster lies on another map ({difference}); {}", same_map::mend_raster(coordinates)))
     })?;
