@@ -182,7 +182,8 @@ fn wrong_layers_are_refused_in_a_sentence() {
     assert_eq!(ran.status, 2, "a chain has no map");
     assert!(ran.stderr.contains("laid over a map"), "{}", ran.stderr);
     desk.write("layered.toml", desk.read("free.toml") + "[layer.sun]\nraster = \"band.asc\"\nmin = 0.3\n");
-    let sliced = desk.run(&["slice", "level.asc", "--from", "2,10", "--to", "38,10", "--scenario", "layered.toml", "-o", "cut.csv"]);
+    let sliced =
+        desk.run(&["slice", "level.asc", "--from", "2,10", "--to", "38,10", "--scenario", "layered.toml", "-o", "cut.csv"]);
     assert!(sliced.status == 0 && sliced.stderr.contains("no columns for layers"), "{}", sliced.stderr);
     let ran = desk.run(&["check", "cut.csv", "--start", "0", "--goal", "36", "--scenario", "layered.toml"]);
     assert!(ran.stderr.contains("layer.sun is laid over a map"), "{}", ran.stderr);
