@@ -224,7 +224,7 @@ impl ConstrainedChain {
         let checked = self.segments.get(id.index()).ok_or(GroundRefusal::NoGround)?.check_contact(contact, direction);
         match checked {
             Err(refusal @ (GroundRefusal::NoGround | GroundRefusal::KeepOut | GroundRefusal::TooSteep { .. })) => Err(refusal),
-            other => self.footprint_refusal(station, id).map_or(other, |refusal| Err(GroundRefusal::Footprint(refusal))),
+            other => self.refusal_at(station, id).map_or(other, Err),
         }
     }
 
@@ -258,7 +258,19 @@ impl ConstrainedChain {
     pub(crate) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Option<&ContactRule> {
         let id = station.ruling_segment(contact, direction, self.segments.len())?;
         let rule = self.segments.get(id.index())?.allowed(contact, direction)?;
-        (self.footprint.is_none() || self.footprint_refusal(station, id).is_none()).then_some(rule)
+        (self.is_uniform() || self.refusal_at(station, id).is_none()).then_some(rule)
+    }
+
+    /// Whether every segment allows the same contacts all over it: no layer refuses any, and the hopper has no footprint.
+    #[inline]
+    pub(crate) fn is_uniform(&self) -> bool {
+        self.footprint.is_none() && self.geometry.layers().is_none_or(|layers| !layers.restrict_contacts())
+    }
+
+    /// Why a layer or the ground under the footprint refuses every contact at a station that a segment rules; `None` if they do not.
+    pub(crate) fn refusal_at(&self, station: &Station, segment: SegmentId) -> Option<GroundRefusal> {
+        let layer = self.geometry.layer_refusing_contact(station.point.x_m).map(GroundRefusal::Layer);
+        layer.or_else(|| self.footprint_refusal(station, segment).map(GroundRefusal::Footprint))
     }
 
     /// Why the ground under the footprint refuses every contact at a station that a segment rules; `None` if it does not, or if the

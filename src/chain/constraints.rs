@@ -8,7 +8,7 @@ use std::{
 use crate::{
     ballistics::ContactLimits,
     quantity::{Angle, AngleInterval, SlopeInterval},
-    world::{Contact, Derating, Direction, FrictionCone, Limit},
+    world::{Contact, Derating, Direction, FrictionCone, LayerName, Limit},
 };
 
 /// The limits of one contact: directions of travel and a greatest speed.
@@ -208,6 +208,8 @@ pub enum GroundRefusal {
     NoGround,
     /// The segment lies in a keep-out zone.
     KeepOut,
+    /// A layer of the map does not hold there.
+    Layer(LayerName),
     /// The surface is too steep to rest on.
     TooSteep {
         /// Inclination of the surface from the horizontal.
@@ -268,6 +270,7 @@ impl GroundRefusal {
         match (self, contact) {
             (Self::NoGround, _) => Limit::Direction,
             (Self::KeepOut, _) => Limit::KeepOut,
+            (Self::Layer(layer), _) => Limit::Layer(*layer),
             (Self::TooSteep { .. }, _) => Limit::RestSlope,
             (Self::Footprint(refusal), _) => refusal.limit(),
             (
@@ -297,7 +300,12 @@ impl GroundRefusal {
             Self::TouchdownSlope { tilt, friction } => Some(tilt.degrees() - friction.half_angle().degrees()),
             Self::TouchdownCone { angles } => Some((angles.min.degrees() + 90.0).max(-90.0 - angles.max.degrees())),
             Self::Footprint(refusal) => refusal.excess_deg(),
-            Self::NoGround | Self::KeepOut | Self::SpeedZero | Self::TouchdownSpeed { .. } | Self::FacesDown { .. } => None,
+            Self::NoGround
+            | Self::KeepOut
+            | Self::Layer(_)
+            | Self::SpeedZero
+            | Self::TouchdownSpeed { .. }
+            | Self::FacesDown { .. } => None,
         }
     }
 }
@@ -307,6 +315,7 @@ impl fmt::Display for GroundRefusal {
         match self {
             Self::NoGround => write!(f, "the chain allows no contact in this direction"),
             Self::KeepOut => write!(f, "it lies in a keep-out zone"),
+            Self::Layer(layer) => write!(f, "the layer {layer} does not hold there"),
             Self::TooSteep { tilt, max } => {
                 write!(f, "its surface slopes {:.3} deg, more than the rest slope of {:.3} deg", tilt.degrees(), max.degrees())
             }

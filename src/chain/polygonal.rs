@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use super::{GroundForm, OffChain, SegmentGround, Site, Station};
+use super::{ChainLayers, GroundForm, OffChain, SegmentGround, Site, Station};
 use crate::{
     quantity::{ChainPoint, MapPoint, SegmentId, VertexId},
-    terrain::{Profile, ProfilePoint},
-    world::{Derating, Direction, FrictionCone},
+    terrain::{MapLayers, Profile, ProfilePoint},
+    world::{Derating, Direction, FrictionCone, LayerName},
 };
 
 /// A validated polygonal chain: at least two finite vertices, x strictly increasing, and a ground for every segment.
@@ -19,6 +19,8 @@ pub struct PolygonalChain {
     map: Option<Vec<MapPoint>>,
     /// Vertices where the plane of travel turns, in ascending order.
     bends: Vec<VertexId>,
+    /// The layers of the map, if it has any.
+    layers: Option<ChainLayers>,
 }
 
 /// One problem of a chain.
@@ -154,7 +156,7 @@ impl PolygonalChain {
             }
         }
         if problems.is_empty() {
-            Ok(Self { vertices, slopes, grounds, map, bends: Vec::new() })
+            Ok(Self { vertices, slopes, grounds, map, bends: Vec::new(), layers: None })
         } else {
             Err(InvalidChain(problems))
         }
@@ -236,6 +238,14 @@ impl PolygonalChain {
         Ok(self)
     }
 
+    /// The same chain under the layers of its map; without map coordinates they have no effect.
+    #[must_use]
+    pub fn with_layers(mut self, layers: &MapLayers) -> Self {
+        let under = |map: &Vec<MapPoint>| ChainLayers::under(layers, &self.vertices, map);
+        self.layers = self.map.as_ref().filter(|_| !layers.is_empty()).map(under);
+        self
+    }
+
     /// The same chain with shares of the speeds and frictions that its segments state.
     #[must_use]
     pub fn derated(mut self, derating: &Derating) -> Self {
@@ -276,6 +286,23 @@ impl PolygonalChain {
             Direction::Forward => self.bends.get(self.bends.partition_point(|v| at(v) <= x_m)).map(at),
             Direction::Reverse => self.bends[..self.bends.partition_point(|v| at(v) < x_m)].last().map(at),
         }
+    }
+
+    /// The layer that refuses every contact at an x, if one does.
+    #[inline]
+    pub fn layer_refusing_contact(&self, x_m: f64) -> Option<LayerName> {
+        self.layers.as_ref()?.refusing_contact(x_m)
+    }
+
+    /// The layer that refuses every flight between two x, if one does.
+    #[inline]
+    pub fn layer_refusing_flight(&self, a_m: f64, b_m: f64) -> Option<LayerName> {
+        self.layers.as_ref()?.refusing_flight(a_m, b_m)
+    }
+
+    /// The layers of the map under it.
+    pub(crate) const fn layers(&self) -> Option<&ChainLayers> {
+        self.layers.as_ref()
     }
 
     /// The vertices, in the direction of +x.

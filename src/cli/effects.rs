@@ -196,7 +196,7 @@ impl Purpose {
 
     /// Whether it answers for a robot with legs over a mesh.
     pub(crate) const fn stands_on_legs(self) -> bool {
-        matches!(self, Self::Plan)
+        matches!(self, Self::Plan | Self::Simulate)
     }
 
     /// Whether its paths are those of an objective within budgets, where the scenario has them.

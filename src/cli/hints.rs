@@ -72,7 +72,9 @@ pub(crate) fn of_problem(problem: &ScenarioProblem) -> &'static str {
         ProblemKind::Missing if key.is_one_of("body", &["gravity_m_s2"]) && takes("body") && takes("gravity-m-s2") => {
             ", or use --body or --gravity-m-s2"
         }
-        ProblemKind::Misplaced if key.is_one_of("surface", &["friction_raster", "keep_out"]) => ", as chta slice --scenario does",
+        ProblemKind::Misplaced if key.is_one_of("surface", &["friction_raster", "keep_out", "keep_in"]) => {
+            ", as chta slice --scenario does"
+        }
         ProblemKind::Misplaced if key.is_one_of("terrain", &["via_m", "via_lonlat_deg"]) => ", as chta slice --via does",
         _ => "",
     }

@@ -356,7 +356,7 @@ impl Bounds {
         let option = max_bytes();
         let (own, what) = match kind {
             FileKind::Scenario | FileKind::Result => (LARGEST_SCENARIO, "a scenario has some kilobytes"),
-            FileKind::Json if role != Role::KeepOut => (LARGEST_SCENARIO, "a result has some megabytes"),
+            FileKind::Json if !matches!(role, Role::KeepOut | Role::KeepIn) => (LARGEST_SCENARIO, "a result has some megabytes"),
             FileKind::GeoJson | FileKind::Json => (LARGEST_GEOJSON, "simplify the polygons"),
             _ => (u64::MAX, ""),
         };

@@ -38,6 +38,8 @@ pub(crate) enum Role {
     ChainKey,
     /// `[surface] keep_out`.
     KeepOut,
+    /// `[surface] keep_in`.
+    KeepIn,
     /// `[surface] friction_raster`.
     Friction,
     /// `[uncertainty] errors`.
@@ -54,6 +56,7 @@ impl Role {
             ("terrain", "mesh") => Some(Self::MeshKey),
             ("terrain", "chain") => Some(Self::ChainKey),
             ("surface", "keep_out") => Some(Self::KeepOut),
+            ("surface", "keep_in") => Some(Self::KeepIn),
             ("surface", "friction_raster") => Some(Self::Friction),
             ("uncertainty", "errors") => Some(Self::Errors),
             _ => None,
@@ -76,6 +79,7 @@ impl Role {
             Self::MeshKey => "terrain.mesh",
             Self::ChainKey => "terrain.chain",
             Self::KeepOut => "surface.keep_out",
+            Self::KeepIn => "surface.keep_in",
             Self::Friction => "surface.friction_raster",
             Self::Errors => "uncertainty.errors",
             Self::Arena => "ARENA",
@@ -101,7 +105,7 @@ impl Role {
             Self::Starts => "a CSV file of positions with the header x_m,y_m",
             Self::MeshKey => "a mesh (OBJ, STL, PLY)",
             Self::ChainKey => "a chain CSV",
-            Self::KeepOut => "zones as GeoJSON, or a mask raster (GeoTIFF, ESRI ASCII grid)",
+            Self::KeepOut | Self::KeepIn => "zones as GeoJSON, or a mask raster (GeoTIFF, ESRI ASCII grid)",
             Self::Friction => "a raster of friction coefficients (GeoTIFF, ESRI ASCII grid)",
             Self::Errors => {
                 "a CSV of measured errors with columns such as takeoff_speed_error_fraction and takeoff_angle_error_deg"
@@ -117,6 +121,7 @@ impl Role {
             Self::MeshKey => Some("mesh"),
             Self::ChainKey => Some("chain"),
             Self::KeepOut => Some("keep_out"),
+            Self::KeepIn => Some("keep_in"),
             Self::Friction => Some("friction_raster"),
             Self::Errors => Some("errors"),
             _ => None,
@@ -156,7 +161,7 @@ impl Role {
                 // By its extension it is taken for a scenario; its reader knows the tables.
                 Self::Arena => *kind == Kind::Scenario,
                 // The zones' reader knows the terrain's map, to which they have to be converted.
-                Self::KeepOut => of_raster || matches!(kind, Kind::GeoJson | Kind::Json | Kind::Shapes(_)),
+                Self::KeepOut | Self::KeepIn => of_raster || matches!(kind, Kind::GeoJson | Kind::Json | Kind::Shapes(_)),
             }
     }
 }
@@ -213,11 +218,15 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
             )
         }
         (_, Role::Friction) => "give a raster on the terrain's map, or friction_coefficient alone".to_owned(),
-        (FileKind::ChainCsv, Role::KeepOut) => {
+        (FileKind::ChainCsv, Role::KeepOut | Role::KeepIn) => {
             "a chain has its zones in its own column keep_out; for a dem draw them as polygons in map coordinates".to_owned()
         }
         (_, Role::KeepOut) => {
             "draw the zones as polygons in the terrain's map coordinates, or give a raster whose pixels other than 0 are kept out"
+                .to_owned()
+        }
+        (_, Role::KeepIn) => {
+            "draw the zones as polygons in the terrain's map coordinates, or give a raster whose pixels other than 0 may be landed on"
                 .to_owned()
         }
         (FileKind::Shapes(VectorFormat::ShapefilePart), _) => "it describes another file beside it: give that one".to_owned(),

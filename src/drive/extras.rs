@@ -1,4 +1,4 @@
-//! What legs between posts have to keep beside slopes: zones, steps and roughness.
+//! What legs between posts have to keep beside slopes: zones, layers, steps and roughness.
 
 use rayon::prelude::*;
 
@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     ground::{MapPosition, NodeLattice, OverlayTable, Post},
-    terrain::{OverlaidDem, Overlays},
+    terrain::OverlaidDem,
 };
 
 /// The limits beside those of slopes, for legs between posts.
@@ -20,6 +20,8 @@ pub(super) struct Extras<'a> {
     drive: &'a DriveGround<'a>,
     lattice: NodeLattice,
     zones: Zones,
+    /// Whether layers restrict contacts.
+    layers: bool,
     /// Of every offset, where the step is limited.
     wheels: Vec<Wheels>,
     /// Of every post, where the roughness is limited: [`KEPT`], or the limit that refuses it.
@@ -48,15 +50,18 @@ impl<'a> Extras<'a> {
     pub(super) fn new(drive: &'a DriveGround<'a>, lattice: NodeLattice, offsets: &[(i32, i32)]) -> Option<Self> {
         let terrain = drive.ground().terrain();
         let limits = drive.rover().limits();
-        let keep_out = terrain.overlays().keep_out();
-        if keep_out.is_none() && limits.step_max_m.is_none() && limits.roughness_max_m.is_none() {
+        let keeps_out = terrain.overlays().zones().next().is_some();
+        let layers = terrain.overlays().layers().iter().any(|layer| layer.rule().on_contact);
+        if !keeps_out && !layers && limits.step_max_m.is_none() && limits.roughness_max_m.is_none() {
             return None;
         }
-        let zones = keep_out.map_or(Zones::None, |zones| {
-            let alone = OverlaidDem::new(terrain.shared_dem(), Overlays::new(None, Some(zones.clone())));
+        let zones = if keeps_out {
+            let alone = OverlaidDem::new(terrain.shared_dem(), terrain.overlays().zones_alone());
             let table = OverlayTable::new(&alone, None).ok().flatten();
             table.map_or(Zones::EachLeg, |table| Zones::Table(Box::new(table)))
-        });
+        } else {
+            Zones::None
+        };
         let base_m = limits.wheelbase_m.filter(|_| limits.step_max_m.is_some());
         let map = terrain.dem().georeference();
         let wheels = base_m.map_or_else(Vec::new, |base_m| {
@@ -81,7 +86,7 @@ impl<'a> Extras<'a> {
             Some(_) => (0..lattice.count()).into_par_iter().map(rough).collect(),
             None => Vec::new(),
         };
-        Some(Self { drive, lattice, zones, wheels, rough })
+        Some(Self { drive, lattice, zones, layers, wheels, rough })
     }
 
     /// Judges the leg of an offset from a post there and back, after its slopes. `heights` is a buffer.
@@ -101,6 +106,9 @@ impl<'a> Extras<'a> {
         if self.keeps_out(from, to) {
             return [DriveLimit::KeepOut as u8; 2];
         }
+        if self.layers && self.layers_refuse(from, to) {
+            return [DriveLimit::Layer as u8; 2];
+        }
         if verdicts.iter().all(|verdict| *verdict != KEPT) {
             return verdicts;
         }
@@ -119,6 +127,11 @@ impl<'a> Extras<'a> {
             Zones::Table(table) if !table.has_border(from, to) => table.kept(self.lattice.index(from)),
             Zones::Table(_) | Zones::EachLeg => each(),
         }
+    }
+
+    fn layers_refuse(&self, from: Post, to: Post) -> bool {
+        let ends = [from, to].map(|post| self.position(post));
+        matches!(ends, [Some(from), Some(to)] if self.drive.is_refused_by_layer(&from, &to))
     }
 
     fn position(&self, post: Post) -> Option<MapPosition> {

@@ -139,6 +139,7 @@ impl<'a> DriveGround<'a> {
         let Some((run_m, heading)) = self.ground.course(from, to) else { return self.standing(from.at) };
         let mut profile = self.slice(from.at, to.at, 0.0)?;
         self.keep_out(&mut profile)?;
+        self.layers(from.at, to.at)?;
         let mut leg = self.along(&profile);
         leg.run_m = run_m;
         self.check_slopes(&leg)?;
@@ -155,6 +156,7 @@ impl<'a> DriveGround<'a> {
         if self.ground.terrain().overlays().keeps_out(at) {
             return Err(DriveRefusal::KeepOut { at_m: 0.0 });
         }
+        self.layers(at, at)?;
         Ok(DriveLeg::default())
     }
 
@@ -172,13 +174,25 @@ impl<'a> DriveGround<'a> {
 
     /// Lays the keep-out zones over a slice and refuses one that enters them.
     fn keep_out(&self, profile: &mut Profile) -> Result<(), DriveRefusal> {
-        let Some(zones) = self.ground.terrain().overlays().keep_out() else { return Ok(()) };
-        // A mask that does not cover the leg says nothing of it: what is not known is not allowed.
-        zones.mark(profile).map_err(|_| DriveRefusal::KeepOut { at_m: 0.0 })?;
+        for zones in self.ground.terrain().overlays().zones() {
+            // A mask that does not cover the leg says nothing of it: what is not known is not allowed.
+            zones.mark(profile).map_err(|_| DriveRefusal::KeepOut { at_m: 0.0 })?;
+        }
         match profile.facets.iter().position(|facet| facet.keep_out) {
             Some(piece) => Err(DriveRefusal::KeepOut { at_m: profile.points[piece].x_m }),
             None => Ok(()),
         }
+    }
+
+    /// Refuses a leg along which a layer does not hold: wheels touch the ground all the way.
+    fn layers(&self, from: MapPoint, to: MapPoint) -> Result<(), DriveRefusal> {
+        let refusing = self.ground.terrain().overlays().layers().refusing_wheels(from, to);
+        refusing.map_or(Ok(()), |layer| Err(DriveRefusal::Layer { layer }))
+    }
+
+    /// Whether a layer refuses the leg.
+    pub(super) fn is_refused_by_layer(&self, from: &MapPosition, to: &MapPosition) -> bool {
+        self.layers(from.at, to.at).is_err()
     }
 
     /// Whether the leg has ground and enters a keep-out zone.

@@ -2,7 +2,7 @@
 
 use std::{fmt, ops::AddAssign};
 
-use crate::quantity::Angle;
+use crate::{quantity::Angle, world::LayerName};
 
 /// What refuses a leg, in the order of testing: a leg counts under the first that it does not keep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -11,6 +11,8 @@ pub enum DriveLimit {
     Ground,
     /// Keep-out zones.
     KeepOut,
+    /// Layers of the map that restrict contacts.
+    Layer,
     /// The steepest slope climbed.
     SlopeUp,
     /// The steepest slope descended.
@@ -25,8 +27,8 @@ pub enum DriveLimit {
 
 impl DriveLimit {
     /// All of them, in the order of testing.
-    pub const ALL: [Self; 7] =
-        [Self::Ground, Self::KeepOut, Self::SlopeUp, Self::SlopeDown, Self::CrossSlope, Self::Step, Self::Roughness];
+    pub const ALL: [Self; 8] =
+        [Self::Ground, Self::KeepOut, Self::Layer, Self::SlopeUp, Self::SlopeDown, Self::CrossSlope, Self::Step, Self::Roughness];
 
     /// The name in messages and results.
     ///
@@ -38,6 +40,7 @@ impl DriveLimit {
         match self {
             Self::Ground => "ground",
             Self::KeepOut => "keep-out",
+            Self::Layer => "layer",
             Self::SlopeUp => "slope-up",
             Self::SlopeDown => "slope-down",
             Self::CrossSlope => "cross-slope",
@@ -68,6 +71,11 @@ pub enum DriveRefusal {
     KeepOut {
         /// Where the first such part begins.
         at_m: f64,
+    },
+    /// A layer of the map does not hold all along the leg.
+    Layer {
+        /// The layer.
+        layer: LayerName,
     },
     /// It climbs too steeply.
     SlopeUp {
@@ -122,6 +130,7 @@ impl DriveRefusal {
         match self {
             Self::NoGround { .. } => DriveLimit::Ground,
             Self::KeepOut { .. } => DriveLimit::KeepOut,
+            Self::Layer { .. } => DriveLimit::Layer,
             Self::SlopeUp { .. } => DriveLimit::SlopeUp,
             Self::SlopeDown { .. } => DriveLimit::SlopeDown,
             Self::CrossSlope { .. } => DriveLimit::CrossSlope,
@@ -142,6 +151,7 @@ impl fmt::Display for DriveRefusal {
         match *self {
             Self::NoGround { at_m } => write!(f, "the ground {at_m:.3} m along the leg has no elevation"),
             Self::KeepOut { at_m } => write!(f, "the leg enters a keep-out zone {at_m:.3} m along"),
+            Self::Layer { layer } => write!(f, "the layer {layer} does not hold all along the leg"),
             Self::SlopeUp { slope, max, at_m } => {
                 write!(f, "the leg climbs {:.3} deg {at_m:.3} m along, more than {:.3} deg", degrees(slope), degrees(max))
             }

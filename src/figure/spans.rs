@@ -11,6 +11,8 @@ use crate::{
 pub enum Closure {
     /// A keep-out zone.
     KeepOut,
+    /// A layer of the map does not hold.
+    Layer,
     /// Too steep to rest on.
     RestSlope,
     /// The plane fitted over the footprint is too steep, or the ground under the footprint is not known.
@@ -27,13 +29,22 @@ pub enum Closure {
 
 impl Closure {
     /// All closures, in the order of the legend.
-    pub const ALL: [Self; 7] =
-        [Self::KeepOut, Self::RestSlope, Self::FootprintSlope, Self::Roughness, Self::Cones, Self::SpeedZero, Self::NoLimits];
+    pub const ALL: [Self; 8] = [
+        Self::KeepOut,
+        Self::Layer,
+        Self::RestSlope,
+        Self::FootprintSlope,
+        Self::Roughness,
+        Self::Cones,
+        Self::SpeedZero,
+        Self::NoLimits,
+    ];
 
     /// The legend text.
     pub const fn text(self) -> &'static str {
         match self {
             Self::KeepOut => "no contact: keep-out",
+            Self::Layer => "no contact: layer",
             Self::RestSlope => "no contact: rest-slope",
             Self::FootprintSlope => "no contact: footprint-slope",
             Self::Roughness => "no contact: roughness",
@@ -46,6 +57,7 @@ impl Closure {
     const fn of(refusal: &GroundRefusal) -> Self {
         match refusal {
             GroundRefusal::KeepOut => Self::KeepOut,
+            GroundRefusal::Layer(_) => Self::Layer,
             GroundRefusal::TooSteep { .. } => Self::RestSlope,
             GroundRefusal::Footprint(FootprintRefusal::TooRough { .. }) => Self::Roughness,
             GroundRefusal::Footprint(_) => Self::FootprintSlope,
@@ -87,24 +99,27 @@ pub struct GroundSpan {
     pub allows: GroundUse,
 }
 
-/// The use of the ground around a station that a segment rules: that of the segment, unless the hopper's footprint closes it.
+/// The use of the ground around a station that a segment rules: that of the segment, unless a layer or the hopper's footprint closes it.
 fn use_at(chain: &ConstrainedChain, station: &Station, id: SegmentId, of_segment: GroundUse) -> GroundUse {
     if of_segment == GroundUse::Closed(Closure::KeepOut) || of_segment == GroundUse::Closed(Closure::NoLimits) {
         return of_segment;
     }
-    let refusal = chain.footprint_refusal(station, id).map(GroundRefusal::Footprint);
-    refusal.map_or(of_segment, |refusal| GroundUse::Closed(Closure::of(&refusal)))
+    chain.refusal_at(station, id).map_or(of_segment, |refusal| GroundUse::Closed(Closure::of(&refusal)))
 }
 
-/// The x that divide a stretch so finely that the use of each part is that of its middle, m: with a footprint, quarters of it, but no
-/// more than a picture shows.
+/// The x that divide a stretch so finely that the use of each part is that of its middle, m: where a layer begins or ends to hold, and with
+/// a footprint quarters of it, but no more than a picture shows.
 fn divided(chain: &ConstrainedChain, (from, to): (f64, f64), of_m: f64) -> Vec<f64> {
     /// More parts than this over the whole picture cannot be told apart in it.
     const PARTS: f64 = 2000.0;
-    let Some(footprint) = chain.footprint() else { return vec![from, to] };
-    let step_m = (0.25 * footprint.diameter_m).max(of_m / PARTS);
+    let step_m = chain.footprint().map_or(f64::INFINITY, |footprint| (0.25 * footprint.diameter_m).max(of_m / PARTS));
     let inner = (1..).map(|i| from + f64::from(i) * step_m).take_while(|x_m| *x_m < to);
-    std::iter::once(from).chain(inner).chain([to]).collect()
+    let mut divided: Vec<f64> = std::iter::once(from).chain(inner).chain([to]).collect();
+    if let Some(layers) = chain.geometry().layers() {
+        divided.extend(layers.contact_ends_m().filter(|x_m| from < *x_m && *x_m < to));
+        divided.sort_by(f64::total_cmp);
+    }
+    divided
 }
 
 /// The use of one segment. The reason of a closed one is that for the journey's direction, unless the chain states no limits for

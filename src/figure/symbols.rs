@@ -110,6 +110,7 @@ struct Hatch {
 const fn hatch(closure: Closure) -> Hatch {
     match closure {
         Closure::KeepOut => Hatch { colour: BLACK, leans: &[1.0, -1.0], step_mm: 1.8, length_mm: 1.8 },
+        Closure::Layer => Hatch { colour: SURFACE, leans: &[-1.0], step_mm: 1.8, length_mm: 1.8 },
         Closure::RestSlope => Hatch { colour: VERMILION, leans: &[-1.0], step_mm: 1.1, length_mm: 2.0 },
         Closure::FootprintSlope => Hatch { colour: ORANGE, leans: &[-1.0], step_mm: 1.1, length_mm: 2.0 },
         Closure::Roughness => Hatch { colour: ORANGE, leans: &[1.0, -1.0], step_mm: 1.8, length_mm: 1.8 },

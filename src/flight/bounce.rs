@@ -102,10 +102,12 @@ pub(super) fn bounces<G: FirstContact>(
         heading = liftoff.heading;
         let flight = arc(ground, &ended.end, &liftoff, &ended.end);
         let touchdown = TouchdownState::after(&liftoff, flight.time_s, gravity_m_s2);
+        let track = ground.check_track(&ended.end, &flight.end);
         ended.end = flight.end;
         ended.count += 1;
         ended.time_s += flight.time_s;
         let held = flight.support_facet.ok_or(ContactFailure::OffLimits).and_then(|met| {
+            track?;
             ground.check_bounce(&flight.end, &met, &touchdown)?;
             Ok(met)
         });

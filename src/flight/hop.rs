@@ -89,7 +89,9 @@ impl HopErrors {
             // A hopper that does not move has no contact to check.
             _ if liftoff.stays() => Ok(()),
             None => Err(ContactFailure::OffLimits),
-            Some(support_facet) => ground.check_landing(&flight.end, support_facet, &touchdown),
+            Some(support_facet) => {
+                ground.check_track(from, &flight.end).and_then(|()| ground.check_landing(&flight.end, support_facet, &touchdown))
+            }
         };
         let bounces = match &ground.hopper().limits().restitution {
             Some(restitution) if held.is_ok() && restitution.bounces() && !liftoff.stays() => {

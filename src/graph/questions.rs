@@ -105,7 +105,7 @@ impl Questions {
         for question in &mut self.questions {
             let refusing = refusing_endpoints(round.test, &question.ends);
             if !refusing.is_empty() {
-                question.answer = Some(round.answer(&question.ends, Outcome::EndpointsRefuse(refusing), question.tally));
+                question.answer = Some(round.answer(&question.ends, Outcome::EndpointsRefuse(refusing), question.tally.clone()));
             }
         }
     }
@@ -138,7 +138,7 @@ impl Questions {
                     None if round.is_last => Some(Outcome::NoPath(Box::new(frontier(round, &batched, *ends, meter)?))),
                     None => None,
                 };
-                *answer = outcome.map(|outcome| round.answer(ends, outcome, *tally));
+                *answer = outcome.map(|outcome| round.answer(ends, outcome, tally.clone()));
             }
         }
         Ok(())

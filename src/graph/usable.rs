@@ -1,7 +1,7 @@
 //! Whether the start or the goal itself refuses every hop.
 
 use crate::{
-    chain::{ConstrainedChain, GroundRefusal, Station},
+    chain::{ChainLayers, ConstrainedChain, GroundRefusal, Station},
     quantity::VertexId,
     world::{Contact, Direction},
 };
@@ -20,6 +20,9 @@ pub struct EndpointRefusal {
     /// The nearest usable point of the chain, by x; `None` if no point of the chain is usable.
     pub nearest: Option<Station>,
 }
+
+/// How far beside a border of a layer a usable point is looked for, as a share of the chain's length: far above rounding.
+const BESIDE_A_BORDER: f64 = 1e-6;
 
 /// Whether a contact is allowed at a station in at least one direction of travel.
 pub fn is_usable(chain: &ConstrainedChain, station: &Station, contact: Contact) -> bool {
@@ -51,7 +54,8 @@ pub fn endpoint_refusal(
 ///
 /// The constraints of a segment are the same all over it, so the point is an end of a segment, or, if another segment rules
 /// that vertex, a point inside at a hundredth of the segment's length. With a footprint they are not: then the points half a footprint
-/// beside every vertex, and those of a grid of quarters of a footprint (at most 10 000 points), are tried as well.
+/// beside every vertex, and those of a grid of quarters of a footprint (at most 10 000 points), are tried as well. Under layers those
+/// beside every border are.
 fn nearest_usable(chain: &ConstrainedChain, station: &Station, contact: Contact) -> Option<Station> {
     let geometry = chain.geometry();
     let away = |other: &Station| (other.point.x_m - station.point.x_m).abs();
@@ -60,18 +64,24 @@ fn nearest_usable(chain: &ConstrainedChain, station: &Station, contact: Contact)
         let run_m = pair[1].x_m - pair[0].x_m;
         [0.01, 0.99].into_iter().filter_map(move |share| geometry.station(pair[0].x_m + share * run_m).ok())
     });
+    let (first_m, last_m) = geometry.extent_m();
+    let beside_m = BESIDE_A_BORDER * (last_m - first_m);
+    let borders = geometry.layers().into_iter().flat_map(ChainLayers::contact_ends_m);
+    let at = |x_m: f64| geometry.station(x_m).ok();
+    let beside = borders.flat_map(|x_m| [x_m - beside_m, x_m + beside_m]).filter_map(at);
     let Some(footprint) = chain.footprint() else {
         return vertices
             .chain(insides)
+            .chain(beside)
             .filter(|candidate| is_usable(chain, candidate, contact))
             .min_by(|a, b| away(a).total_cmp(&away(b)));
     };
-    let ((first_m, last_m), half_m) = (geometry.extent_m(), 0.5 * footprint.diameter_m);
-    let beside = geometry.vertices().iter().flat_map(|vertex| [vertex.x_m - half_m, vertex.x_m + half_m]);
+    let half_m = 0.5 * footprint.diameter_m;
+    let ends = geometry.vertices().iter().flat_map(|vertex| [vertex.x_m - half_m, vertex.x_m + half_m]);
     let step_m = (0.5 * half_m).max((last_m - first_m) / 10_000.0);
     let grid = (0..=10_000).map(|i| first_m + f64::from(i) * step_m).take_while(|x_m| *x_m <= last_m);
-    let added = beside.chain(grid).filter_map(|x_m| geometry.station(x_m).ok());
-    let mut nearest: Vec<Station> = vertices.chain(insides).chain(added).collect();
+    let added = ends.chain(grid).filter_map(at);
+    let mut nearest: Vec<Station> = vertices.chain(insides).chain(beside).chain(added).collect();
     nearest.sort_by(|a, b| away(a).total_cmp(&away(b)));
     nearest.into_iter().find(|candidate| is_usable(chain, candidate, contact))
 }

@@ -6,9 +6,9 @@ use nalgebra::{Point3, Vector2};
 
 use super::{Around, ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Profiles, Side, Surface};
 use crate::{
-    chain::{ConstrainedChain, Footing, GroundForm, SegmentConstraints, Site, Station, rest_slope},
+    chain::{ChainLayers, ConstrainedChain, Footing, GroundForm, SegmentConstraints, Site, Station, rest_slope},
     quantity::{SegmentId, VertexId},
-    terrain::{FacetSpan, Triangles},
+    terrain::{FacetSpan, MapLayers, Triangles},
     world::{Contact, Direction, Gravity, Hopper},
 };
 
@@ -85,6 +85,10 @@ impl Surface for ConstrainedChain {
         let id = at.ruling_segment(contact, direction, self.segments().len());
         let rest = |id: SegmentId| self.geometry().grounds().get(id.index()).and_then(|ground| rest_slope(ground, self.surface()));
         id.and_then(|id| Some(facet(self.segments().get(id.index())?, direction, rest(id)))).into_iter().collect()
+    }
+
+    fn layers(&self) -> Option<&MapLayers> {
+        self.geometry().layers().map(ChainLayers::map)
     }
 
     fn height_rounding_m(&self) -> f64 {

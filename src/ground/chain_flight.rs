@@ -210,6 +210,11 @@ impl ChainGround {
         direction: Direction,
     ) -> Result<ContactRule, GroundRefusal> {
         let checked = self.check_segment(segment, contact, direction);
+        // A hopper that stands where a layer does not hold may leave, as at a start.
+        let layer = self.test.chain().geometry().layer_refusing_contact(at.point.x_m).filter(|_| contact == Contact::Landing);
+        if let (Ok(_), Some(layer)) = (checked, layer) {
+            return Err(GroundRefusal::Layer(layer));
+        }
         match (checked, segment) {
             (Err(GroundRefusal::NoGround | GroundRefusal::KeepOut | GroundRefusal::TooSteep { .. }), _) | (_, None) => checked,
             (_, Some(id)) => self.footprint_refusal(at, id).map_or(checked, |refusal| Err(GroundRefusal::Footprint(refusal))),
@@ -465,6 +470,12 @@ impl FirstContact for ChainGround {
         check_landing(rule, self.test.hopper().limits().arc_landing_speed_max_m_s(), touchdown)
     }
 
+    fn check_track(&self, from: &ChainPosition, end: &ChainPosition) -> Result<(), ContactFailure> {
+        let geometry = self.test.chain().geometry();
+        let refusing = geometry.layer_refusing_flight(from.station.point.x_m, end.station.point.x_m);
+        if refusing.is_some() { Err(ContactFailure::OffLimits) } else { Ok(()) }
+    }
+
     fn normal(&self, facet: &SegmentId) -> Vector3<f64> {
         let (a, b) = (self.vertices()[facet.index()], self.vertices()[facet.index() + 1]);
         Vector3::new(-(b.z_m - a.z_m) / (b.x_m - a.x_m), -0.0, 1.0)
@@ -473,7 +484,7 @@ impl FirstContact for ChainGround {
     fn check_bounce(&self, end: &ChainPosition, facet: &SegmentId, touchdown: &TouchdownState) -> Result<(), ContactFailure> {
         let rule = self.check_contact(&end.station, Some(*facet), Contact::Landing, direction_of(touchdown.heading));
         let stated_m_s = match rule {
-            Err(GroundRefusal::KeepOut) => return Err(ContactFailure::OffLimits),
+            Err(GroundRefusal::KeepOut | GroundRefusal::Layer(_)) => return Err(ContactFailure::OffLimits),
             Err(_) => f64::INFINITY,
             Ok(rule) => rule.speed_max_m_s(),
         };
@@ -515,10 +526,11 @@ impl ChainGround {
     /// Whether the hopper rests at a station that a segment rules.
     fn rests(&self, at: &Station, segment: SegmentId) -> Result<(), ContactFailure> {
         let footprint = || self.footprint_refusal(at, segment).map(GroundRefusal::Footprint);
-        match self.refusal(segment.index()).or_else(footprint) {
+        let layer = || self.test.chain().geometry().layer_refusing_contact(at.point.x_m).map(GroundRefusal::Layer);
+        match self.refusal(segment.index()).or_else(layer).or_else(footprint) {
             None => Ok(()),
             Some(GroundRefusal::Footprint(refusal)) => Err(failure_of(&refusal)),
-            Some(GroundRefusal::KeepOut) => Err(ContactFailure::OffLimits),
+            Some(GroundRefusal::KeepOut | GroundRefusal::Layer(_)) => Err(ContactFailure::OffLimits),
             Some(_) => Err(ContactFailure::Slides),
         }
     }

@@ -18,7 +18,8 @@ use crate::{
     hop::HopTest,
     quantity::{ChainPoint, MapPoint, SegmentId, SlopeInterval, VertexId},
     terrain::{
-        FootprintFit, FootprintGap, OverlaidDem, Profile, ProfileFacet, ProfilePoint, Surroundings, TerrainError, Triangles,
+        FootprintFit, FootprintGap, MapLayers, OverlaidDem, Profile, ProfileFacet, ProfilePoint, Surroundings, TerrainError,
+        Triangles,
     },
     world::{Contact, Direction, FrictionCone, Gravity, Hopper, RestSlope, SurfaceProperties},
 };
@@ -121,6 +122,11 @@ impl DemGround {
         &self.terrain
     }
 
+    /// The layers of the map.
+    pub fn layers(&self) -> &MapLayers {
+        self.terrain.overlays().layers()
+    }
+
     /// The flight envelope of the hopper under its gravity.
     pub const fn envelope(&self) -> &FlightEnvelope {
         &self.envelope
@@ -155,7 +161,7 @@ impl DemGround {
     }
 
     fn constrained(&self, profile: &Profile) -> Result<ConstrainedChain, SliceProblem> {
-        let chain = PolygonalChain::from_profile(profile, self.constant_friction())?;
+        let chain = PolygonalChain::from_profile(profile, self.constant_friction())?.with_layers(self.layers());
         let gravity = self.envelope.gravity();
         Ok(match &self.footprint {
             Some((_, dem)) => ConstrainedChain::on_dem(Arc::clone(dem), chain, self.hopper(), gravity, &self.surface)?,
@@ -291,6 +297,9 @@ impl DemGround {
     ) -> Option<SlopeInterval> {
         let triangles = self.triangles();
         let nominal = triangles.nominal();
+        if self.layers().refusing_hop(from.at, to.at).is_some() {
+            return None;
+        }
         let (ahead, before) = (from.at + heading * BESIDE_M, to.at - heading * BESIDE_M);
         let (from_gradient, to_gradient) = (triangles.at(ahead, nominal)?.1, triangles.at(before, nominal)?.1);
         if self.are_arcs_excluded([(from_gradient, ahead), (to_gradient, before)], sight, heading) {
@@ -438,6 +447,10 @@ impl Surface for DemGround {
         let overlaid = |gradient| self.overlaid(at.at, heading, side, gradient);
         let known = [left, right].into_iter().flatten().filter_map(|gradient| overlaid(gradient).map(|known| (gradient, known)));
         known.map(|(gradient, known)| facet_of(gradient, self.surface.rest, known)).collect()
+    }
+
+    fn layers(&self) -> Option<&MapLayers> {
+        Some(self.layers())
     }
 
     fn height_rounding_m(&self) -> f64 {

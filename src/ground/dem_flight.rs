@@ -46,6 +46,11 @@ impl DemGround {
         self.terrain().overlays().keeps_out(at)
     }
 
+    /// Whether a contact at a position, of which the ground `beside` it rules, lies in a keep-out zone or where a layer refuses it.
+    fn is_off_limits(&self, at: MapPoint, beside: MapPoint) -> bool {
+        self.is_kept_out(beside) || self.layers().refusing_contact(at).is_some()
+    }
+
     /// Whether the hopper rests at a position on a facet with this friction: on the facet, or with a footprint on the plane fitted
     /// over it.
     fn rests(&self, at: &MapPosition, gradient: Gradient, friction: Option<f64>) -> Result<(), ContactFailure> {
@@ -186,7 +191,7 @@ impl FirstContact for DemGround {
         let flown_over = end.at - touchdown.heading * BESIDE_M;
         let limits = self.hopper().limits();
         let landing_speed_max_m_s = limits.arc_landing_speed_max_m_s();
-        if self.is_kept_out(flown_over) {
+        if self.is_off_limits(end.at, flown_over) {
             return Err(ContactFailure::OffLimits);
         }
         if touchdown.is_over(landing_speed_max_m_s) {
@@ -217,12 +222,16 @@ impl FirstContact for DemGround {
         }
     }
 
+    fn check_track(&self, from: &MapPosition, end: &MapPosition) -> Result<(), ContactFailure> {
+        if self.layers().refusing_flight(from.at, end.at).is_some() { Err(ContactFailure::OffLimits) } else { Ok(()) }
+    }
+
     fn normal(&self, facet: &Gradient) -> Vector3<f64> {
         normal_of(*facet)
     }
 
     fn check_bounce(&self, end: &MapPosition, _facet: &Gradient, touchdown: &TouchdownState) -> Result<(), ContactFailure> {
-        if self.is_kept_out(end.at - touchdown.heading * BESIDE_M) {
+        if self.is_off_limits(end.at, end.at - touchdown.heading * BESIDE_M) {
             return Err(ContactFailure::OffLimits);
         }
         if touchdown.is_over(self.hopper().limits().landing_speed_max_m_s) {
@@ -248,7 +257,7 @@ impl FirstContact for DemGround {
         let left = Vector2::new(-heading.y, heading.x);
         let at = from.at + heading * along_m + left * left_m;
         let (z_m, gradient) = self.triangles().at(at, self.heights(self.triangles())).ok_or(ContactFailure::OffLimits)?;
-        if self.is_kept_out(at) {
+        if self.is_off_limits(at, at) {
             return Err(ContactFailure::OffLimits);
         }
         let position = MapPosition { at, z_m };

@@ -53,7 +53,7 @@ pub enum ContactFailure {
     Slides,
     /// The landing is faster than its limit.
     TooFast,
-    /// The contact lies in a keep-out zone or where no ground is known.
+    /// The contact lies in a keep-out zone, where a layer refuses it or where no ground is known, or a layer refuses the flight.
     OffLimits,
 }
 
@@ -97,6 +97,14 @@ pub trait FirstContact: Surface + Clone + Send + Sync {
         support_facet: &Self::SupportFacet,
         touchdown: &TouchdownState,
     ) -> Result<(), ContactFailure>;
+
+    /// Whether the layers of the map hold under a flight from one contact to another.
+    ///
+    /// # Errors
+    /// [`ContactFailure::OffLimits`] where one does not.
+    fn check_track(&self, _from: &Self::Contact, _end: &Self::Contact) -> Result<(), ContactFailure> {
+        Ok(())
+    }
 
     /// The outward normal of a facet, of any length, in the coordinates of [`point`](Self::point). A chain does not slope to the side.
     fn normal(&self, facet: &Self::SupportFacet) -> Vector3<f64>;
@@ -218,7 +226,7 @@ pub(super) fn check_landing(
     touchdown: &TouchdownState,
 ) -> Result<(), ContactFailure> {
     match rule {
-        Err(GroundRefusal::KeepOut) => Err(ContactFailure::OffLimits),
+        Err(GroundRefusal::KeepOut | GroundRefusal::Layer(_)) => Err(ContactFailure::OffLimits),
         Err(GroundRefusal::Footprint(refusal)) if !touchdown.is_over(landing_speed_max_m_s) => Err(failure_of(&refusal)),
         Err(refusal) => {
             let stated = matches!(refusal, GroundRefusal::SpeedZero | GroundRefusal::TouchdownSpeed { .. });

@@ -32,8 +32,8 @@ const FOUR: [(f64, f64); 4] = [
 const TWO: [(f64, f64); 2] = [(-1.0, 0.5), (1.0, 0.5)];
 
 impl DemGround {
-    /// The probability that the facet on which a hop comes down refuses it: without elevation, too steep to rest on, or with a friction cone
-    /// that does not hold the direction of arrival. Where friction differs from place to place, cones are not looked at.
+    /// The probability that the facet on which a hop comes down refuses it: without elevation, where a layer does not hold, too steep to rest on,
+    /// or with a friction cone that does not hold the direction of arrival. Where friction differs from place to place, cones are not looked at.
     ///
     /// By quadrature over the scatter of the landings and the error of friction; without scatter, over the facets that meet at the target.
     ///
@@ -58,7 +58,8 @@ impl DemGround {
         for (ahead, weight) in FOUR {
             for (aside, beside) in TWO {
                 let at = target.at + along * ahead + across * aside;
-                let gradient = triangles.at(at, triangles.nominal()).map(|(_, gradient)| gradient);
+                let off_limits = self.layers().refusing_contact(at).is_some();
+                let gradient = triangles.at(at, triangles.nominal()).map(|(_, gradient)| gradient).filter(|_| !off_limits);
                 let refused = match (gradient, coefficient) {
                     (None, _) => 1.0,
                     (Some(gradient), None) => f64::from(u8::from(self.refuses(gradient, back, None))),

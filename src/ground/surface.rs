@@ -8,6 +8,7 @@ use crate::{
     ballistics::{LineOfSight, TakeoffSpeeds},
     chain::{ContactRule, GroundRefusal, LineConstraints, Station},
     quantity::{ChainPoint, FacetId, MapPoint, SlopeInterval, VertexId},
+    terrain::MapLayers,
     world::{Contact, FrictionCone, Gravity, Hopper},
 };
 
@@ -185,6 +186,11 @@ pub trait Surface {
     /// The facets that rule a contact for a line of travel: the facet under the line on that side of the contact, or both facets if it
     /// runs along their common edge; of a mesh all that meet at the contact.
     fn facets(&self, at: &Self::Contact, heading: Vector2<f64>, side: Side) -> Vec<Facet>;
+
+    /// The layers of the map that contacts and flights obey; `None` without a map.
+    fn layers(&self) -> Option<&MapLayers> {
+        None
+    }
 
     /// Rounding error of the heights of this ground, m.
     fn height_rounding_m(&self) -> f64;

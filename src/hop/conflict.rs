@@ -7,7 +7,7 @@ use crate::{
     ballistics::{Arc, FlightEnvelope, LineOfSight, TakeoffChoice, TakeoffSpeeds, least_takeoff_speed_m_s},
     chain::GroundRefusal,
     quantity::SlopeInterval,
-    world::{Contact, Limit},
+    world::{Contact, LayerName, Limit},
 };
 
 /// By how much a single limit refuses every arc.
@@ -31,6 +31,11 @@ pub enum Shortfall {
     Bend {
         /// x of the bend, m along the chain.
         x_m: f64,
+    },
+    /// A layer of the map does not hold under the flight.
+    Flight {
+        /// The layer.
+        layer: LayerName,
     },
     /// The landing itself is too high.
     Height {
@@ -125,6 +130,7 @@ impl fmt::Display for Shortfall {
                 write!(f, "every arc needs at least {needed_m_s:.6} m/s, the limit is {limit_m_s} m/s")
             }
             Self::Bend { x_m } => write!(f, "the chain bends at x = {x_m} m, and a hop is flown in one plane: land on the bend"),
+            Self::Flight { layer } => write!(f, "the layer {layer} does not hold all along the ground flown over"),
             Self::Height { needed_m, limit_m } => {
                 write!(f, "the landing lies {needed_m:.6} m above the take-off, the limit is {limit_m} m")
             }

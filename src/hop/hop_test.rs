@@ -123,6 +123,9 @@ impl HopTest {
         if self.chain.geometry().bend_between(takeoff.point.x_m, landing.point.x_m).is_some() {
             return Err(Limit::Bend);
         }
+        if let Some(layer) = self.chain.geometry().layer_refusing_flight(takeoff.point.x_m, landing.point.x_m) {
+            return Err(Limit::Layer(layer));
+        }
         let sight = self.line_of_sight(takeoff, landing).ok_or(Limit::Direction)?;
         let in_envelope = self.lofts_in_envelope(sight, from, to)?;
         let vertices = self.chain.geometry().vertices();
@@ -271,26 +274,30 @@ impl HopTest {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let segment = takeoff.shared_segment(landing)?;
         let run_m = (landing.point.x_m - takeoff.point.x_m).abs();
+        if self.chain.geometry().layer_refusing_flight(takeoff.point.x_m, landing.point.x_m).is_some() {
+            return None;
+        }
         let ranges = self.segment_reaches(segment, direction);
         let found = ranges.iter().filter_map(|reach| reach.hops_over(run_m).filter(|hops| reach.flies(self, hops)));
-        if self.chain.footprint().is_some() {
+        if !self.chain.is_uniform() {
             return found.filter_map(|hops| self.hops_that_stand(takeoff, landing, segment, hops)).min_by_key(SegmentHops::hops);
         }
         found.min_by_key(SegmentHops::hops)
     }
 
-    /// The hops along a segment with the splits of which the footprint allows every contact; `None` if it allows no split.
+    /// The hops along a segment with the splits of which the layers and the footprint allow every contact; `None` if they allow none.
     fn hops_that_stand(&self, takeoff: &Station, landing: &Station, segment: SegmentId, hops: SegmentHops) -> Option<SegmentHops> {
-        let (geometry, footprint) = (self.chain.geometry(), self.chain.footprint()?);
-        let refuses = |station: &Station| self.chain.footprint_refusal(station, segment).is_some();
+        let geometry = self.chain.geometry();
+        let refuses = |station: &Station| self.chain.refusal_at(station, segment).is_some();
         if refuses(takeoff) || refuses(landing) {
             return None;
         }
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
-        // Along a profile the ground in the middle of a segment is plane.
-        let half_m = 0.5 * footprint.diameter_m;
+        // Along a profile the ground in the middle of a segment is plane, unless a layer of the map differs along it.
+        let half_m = self.chain.footprint().map_or(0.0, |footprint| 0.5 * footprint.diameter_m);
         let ends = geometry.vertices().get(segment.index()..segment.index() + 2)?;
-        let plain = matches!(self.chain.footing(), Footing::Profile).then(|| (ends[0].x_m + half_m, ends[1].x_m - half_m));
+        let is_plain = matches!(self.chain.footing(), Footing::Profile) && geometry.layers().is_none();
+        let plain = is_plain.then(|| (ends[0].x_m + half_m, ends[1].x_m - half_m));
         let refused = |x_m: f64| geometry.station(x_m).map_or(true, |station| refuses(&station));
         let stands = |each_m| contacts_stand(refused, takeoff.point.x_m, direction, each_m, hops.hops(), plain);
         hops.where_standing(stands)

@@ -146,7 +146,7 @@ impl TakeoffSet {
 
 impl LimitInterval {
     /// A limit without a place on the terrain.
-    const fn new(limit: Limit, lofts: SlopeInterval, shortfall: Option<Shortfall>) -> Self {
+    pub(crate) const fn new(limit: Limit, lofts: SlopeInterval, shortfall: Option<Shortfall>) -> Self {
         Self { limit, lofts, vertex: None, kink_x_m: None, gap: None, shortfall }
     }
 }
@@ -169,6 +169,9 @@ fn all_limits(
         let x_m = test.chain().geometry().vertices()[vertex.index()].x_m;
         let bend = LimitInterval::new(Limit::Bend, SlopeInterval::EMPTY, Some(Shortfall::Bend { x_m }));
         found.push(LimitInterval { vertex: Some(vertex), ..bend });
+    }
+    if let Some(layer) = test.chain().geometry().layer_refusing_flight(takeoff.point.x_m, landing.point.x_m) {
+        found.push(LimitInterval::new(Limit::Layer(layer), SlopeInterval::EMPTY, Some(Shortfall::Flight { layer })));
     }
     found.push(terrain(test, takeoff, landing, sight));
     found.sort_by_key(|limit| limit.limit);

@@ -93,6 +93,7 @@ pub fn drive_again<G: Profiles>(ground: &G, rover: &Rover, from: &G::Contact, to
         let along = libm::atan(slope);
         steepest[0] = steepest[0].max(along);
         steepest[1] = steepest[1].max(-along);
+        driven.layers(ground, &place, (element.from_m, element.to_m));
         let middle_m = element.from_m + 0.5 * width_m;
         let Some(middle) = place(middle_m) else {
             driven.violate("ground", middle_m, run_m);
@@ -119,6 +120,20 @@ pub fn drive_again<G: Profiles>(ground: &G, rover: &Rover, from: &G::Contact, to
 impl DrivenAgain {
     fn violate(&mut self, limit: &'static str, found: f64, most: f64) {
         self.violations.push(DriveViolation { limit, found, most });
+    }
+
+    /// Layers on contacts, cell by cell at places along a part of the leg; one on a border may lie on either side of it.
+    fn layers<G: Profiles>(&mut self, ground: &G, place: &dyn Fn(f64) -> Option<G::Contact>, (from_m, to_m): (f64, f64)) {
+        /// Places on each part, which crosses no more than one line of posts.
+        const PLACES: u32 = 8;
+        let Some(layers) = ground.layers().filter(|layers| !layers.is_empty()) else { return };
+        for number in 0..=PLACES {
+            let at_m = from_m + (to_m - from_m) * f64::from(number) / f64::from(PLACES);
+            let Some(at) = place(at_m).and_then(|at| ground.contact_point(&at).map()) else { continue };
+            if layers.iter().any(|layer| layer.rule().on_contact && !super::execute::holds_near(layer, at)) {
+                return self.violate("layer", at_m, 0.0);
+            }
+        }
     }
 
     /// The step over the wheelbase, and the roughness at both ends.
@@ -221,6 +236,7 @@ mod tests {
         match limit {
             DriveLimit::Ground => "ground",
             DriveLimit::KeepOut => "keep-out",
+            DriveLimit::Layer => "layer",
             DriveLimit::SlopeUp => "slope_up_max_deg",
             DriveLimit::SlopeDown => "slope_down_max_deg",
             DriveLimit::CrossSlope => "cross_slope_max_deg",

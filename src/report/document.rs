@@ -35,6 +35,8 @@ pub enum DocumentKind {
     Simulate,
     /// Trials along a path over a mesh: [`MeshSimulateAnswer`](super::MeshSimulateAnswer).
     SimulateMesh,
+    /// Trials of a robot with legs: [`LegsSimulateAnswer`](super::LegsSimulateAnswer).
+    SimulateLegs,
     /// Trials of a mission of a scenario that drives: [`TravelSimulateAnswer`](super::TravelSimulateAnswer).
     SimulateTravel,
     /// An experiment with trials: [`ExperimentAnswer`](super::ExperimentAnswer).
@@ -63,7 +65,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -77,6 +79,7 @@ impl DocumentKind {
         Self::RunMesh,
         Self::Simulate,
         Self::SimulateMesh,
+        Self::SimulateLegs,
         Self::SimulateTravel,
         Self::SimulateExperiment,
         Self::Require,
@@ -107,6 +110,7 @@ impl DocumentKind {
             Self::RunMesh => "run-mesh",
             Self::Simulate => "simulate",
             Self::SimulateMesh => "simulate-mesh",
+            Self::SimulateLegs => "simulate-legs",
             Self::SimulateTravel => "simulate-travel",
             Self::SimulateExperiment => "simulate-experiment",
             Self::Require => "require",

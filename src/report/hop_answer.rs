@@ -327,7 +327,7 @@ impl BindingRecord {
                 let (gap_deg, gap_m_s) = match alone.shortfall {
                     Some(Shortfall::Ground { refusal, .. }) => (refusal.excess_deg(), None),
                     Some(Shortfall::Speed { needed_m_s, limit_m_s }) => (None, Some(needed_m_s - limit_m_s)),
-                    Some(Shortfall::Height { .. } | Shortfall::Bend { .. }) | None => (None, None),
+                    Some(Shortfall::Height { .. } | Shortfall::Bend { .. } | Shortfall::Flight { .. }) | None => (None, None),
                 };
                 (vec![alone.limit], gap_deg, gap_m_s, alone)
             }

@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::{graph::RefusalCounts, world::Limit};
+use crate::{
+    graph::RefusalCounts,
+    world::{LayerName, Limit},
+};
 
 /// The number of refusals by limit, in the order of the limits' names; a limit that refuses nothing is absent. In JSON an object.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -86,6 +89,7 @@ impl JsonSchema for LimitCounts {
             (limit.name().to_owned(), count.to_value())
         };
         let properties: serde_json::Map<String, serde_json::Value> = Limit::ALL.into_iter().map(property).collect();
-        json_schema!({ "type": "object", "properties": properties, "additionalProperties": false })
+        let layers = serde_json::Map::from_iter([(LayerName::LIMIT_PATTERN.to_owned(), count.to_value())]);
+        json_schema!({ "type": "object", "properties": properties, "patternProperties": layers, "additionalProperties": false })
     }
 }

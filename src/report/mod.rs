@@ -13,6 +13,7 @@ mod hop_answer;
 mod hop_margins;
 pub mod landings;
 mod legs_plan_answer;
+mod legs_simulate_answer;
 mod limit_counts;
 mod limit_pair;
 mod map_answer;
@@ -62,6 +63,7 @@ pub use hop_answer::{
 };
 pub use hop_margins::HopMarginsRecord;
 pub use legs_plan_answer::{LegsPlanAnswer, RefusedPosesRecord, StanceRecord, legs_plan_text};
+pub use legs_simulate_answer::{EndedInHopRecord, LegsOutcomeRecord, LegsSimulateAnswer, LegsTrialsRecord, legs_simulate_text};
 pub use limit_counts::LimitCounts;
 pub use limit_pair::LimitPair;
 pub use map_answer::{

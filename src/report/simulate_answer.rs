@@ -168,7 +168,7 @@ pub struct OutcomeRecord {
     pub slid_at_landing: u64,
     /// A landing was too fast.
     pub damaged: u64,
-    /// It left the known ground, or landed in a keep-out zone.
+    /// It left the known ground, or landed in a keep-out zone or where a layer does not hold, or flew where one does not.
     pub lost: u64,
     /// No further hop was feasible.
     pub stuck: u64,

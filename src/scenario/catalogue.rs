@@ -60,6 +60,8 @@ pub enum Kind {
     SlipCurve,
     /// Tables of groups of faces, by their names.
     FaceGroups,
+    /// A table of a layer; its name is any, so that the key of the catalogue is called NAME.
+    Layer,
     /// Any text.
     Text,
 }
@@ -84,7 +86,7 @@ impl Key {
             (self.table, self.name),
             ("robot", "file")
                 | ("terrain", "dem" | "mesh" | "chain")
-                | ("surface", "friction_raster" | "keep_out")
+                | ("surface", "friction_raster" | "keep_out" | "keep_in")
                 | ("uncertainty", "errors")
         )
     }
@@ -96,7 +98,7 @@ impl Key {
 
     /// The known key of this table and name.
     pub fn find(table: &str, name: &str) -> Option<&'static Self> {
-        CATALOGUE.iter().find(|key| key.table == table && key.name == name)
+        CATALOGUE.iter().find(|key| key.table == table && (key.name == name || (key.kind == Kind::Layer && !name.is_empty())))
     }
 }
 
@@ -145,6 +147,10 @@ impl Kind {
             Self::FaceGroups => {
                 "a table for each group of faces, with friction_coefficient (a number from 0 to 1e6), rest_slope_max_deg (an angle \
                                  from 0 to 90 degrees, or inf) or keep_out (true or false), such as [surface.group.ice]"
+                    .to_owned()
+            }
+            Self::Layer => {
+                "a table with raster (a path), min, max or equals (numbers) and applies_to (contact, flight or both), such as [layer.sun]"
                     .to_owned()
             }
             Self::Text => "a text in quotes, not empty".to_owned(),
@@ -204,7 +210,7 @@ const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 121] = [
+pub const CATALOGUE: [Key; 123] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -328,9 +334,21 @@ pub const CATALOGUE: [Key; 121] = [
     ),
     key(
         "surface",
+        "keep_in",
+        Kind::Text,
+        "GeoJSON polygons or mask raster on the dem's map, path from this file: take-off and landing nowhere else",
+    ),
+    key(
+        "surface",
         "group",
         Kind::FaceGroups,
         "friction, rest slope and keep-out of groups, objects or materials of an OBJ, [surface.group.NAME]; for hops over a mesh alone",
+    ),
+    key(
+        "layer",
+        "NAME",
+        Kind::Layer,
+        "raster on the dem's map whose condition restricts contacts or flights, [layer.NAME], any number of them; no data does not hold",
     ),
     key(
         "contact",
@@ -666,7 +684,7 @@ mod tests {
             "seed",
         ];
         for key in &CATALOGUE {
-            let number = !matches!(key.kind, Kind::Word(_) | Kind::Text | Kind::Flag | Kind::FaceGroups);
+            let number = !matches!(key.kind, Kind::Word(_) | Kind::Text | Kind::Flag | Kind::FaceGroups | Kind::Layer);
             assert!(
                 !number || pure.contains(&key.name) || units.iter().any(|unit| key.name.ends_with(unit)),
                 "{} has no unit",

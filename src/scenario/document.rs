@@ -30,6 +30,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     tables.insert("hopper".to_owned(), hopper(scenario));
     tables.insert("robot".to_owned(), legs(&scenario.legs, named));
     tables.insert("surface".to_owned(), surface(scenario, named));
+    tables.insert("layer".to_owned(), super::layers::document(&scenario.layers, named));
     tables.insert("contact".to_owned(), contact(scenario));
     tables.insert("terrain".to_owned(), terrain(scenario, named));
     tables.insert("search".to_owned(), search(scenario));
@@ -142,6 +143,7 @@ fn surface(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         ("group", (!scenario.groups.is_empty()).then(|| scenario.groups.iter().map(face_group).collect::<Map<_, _>>().into())),
         ("friction_raster", scenario.friction_raster.as_deref().map(|path| named(path).into())),
         ("keep_out", scenario.keep_out.as_deref().map(|path| named(path).into())),
+        ("keep_in", scenario.keep_in.as_deref().map(|path| named(path).into())),
     ])
 }
 

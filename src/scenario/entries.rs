@@ -213,6 +213,20 @@ impl Entries {
         files.filter_map(|key| Some((key, self.text(key.table, key.name)?.to_owned()))).collect()
     }
 
+    /// Gives the raster of every layer the path that `moved` makes of it.
+    pub fn redirect_layers(&mut self, moved: impl Fn(&str) -> String) {
+        for entry in self.given.iter_mut().filter(|((table, _), _)| table == "layer").map(|(_, entry)| entry) {
+            if let Some(toml::Value::String(path)) = entry.value.get_mut("raster") {
+                *path = moved(path);
+            }
+        }
+    }
+
+    /// The names of the keys given of a table, in their order.
+    pub fn names_in(&self, table: &str) -> Vec<String> {
+        self.given.keys().filter(|(known, _)| known == table).map(|(_, name)| name.clone()).collect()
+    }
+
     /// Gives a key that names a file another path.
     pub fn redirect(&mut self, key: &Key, path: &str) {
         if let Some(entry) = self.given.get_mut(&(key.table.to_owned(), key.name.to_owned())) {
@@ -367,6 +381,12 @@ impl Entries {
     /// Checks a value against its key's kind and stores it.
     fn add(&mut self, table: &str, name: &str, value: toml::Value, place: Place, key_place: Place) {
         let Some(key) = Key::find(table, name) else { return self.unknown(table, name, key_place) };
+        // One key of a layer, `layer.sun.min`, beside those it has.
+        if let (Kind::Layer, Some((layer, own))) = (key.kind, name.split_once('.')) {
+            let mut keys = self.value(table, layer).and_then(toml::Value::as_table).cloned().unwrap_or_default();
+            keys.insert(own.to_owned(), value);
+            return self.add(table, layer, keys.into(), place, key_place);
+        }
         if fits(&value, key.kind) {
             if let (Some(Place::Option(before)), Place::Option(now)) = (self.place(table, name), &place)
                 && self.value(table, name) != Some(&value)

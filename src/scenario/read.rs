@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use super::{
-    Budget, DriveKeys, Entries, LegsKeys, MeshSearch, Place, ProblemKind, Route, ScenarioProblem, TerrainSource, UncertaintyKeys,
+    Budget, DriveKeys, Entries, LayerKeys, LegsKeys, MeshSearch, Place, ProblemKind, Route, ScenarioProblem, TerrainSource,
+    UncertaintyKeys,
     propulsion::{self, landing},
     terrain_source::{terrain, via},
 };
@@ -58,6 +59,10 @@ pub struct Scenario {
     pub friction_raster: Option<PathBuf>,
     /// Path of the keep-out zones, relative to the scenario's folder.
     pub keep_out: Option<PathBuf>,
+    /// Path of the keep-in zones, relative to the scenario's folder.
+    pub keep_in: Option<PathBuf>,
+    /// The layers, in the order of their names.
+    pub layers: Vec<LayerKeys>,
     /// The terrain, if the scenario names one.
     pub terrain: Option<TerrainSource>,
     /// Whether a map whose scale along the transect is off by over 1 % is accepted.
@@ -122,7 +127,8 @@ impl Scenario {
         let route = super::route::route(&mut entries, terrain.as_ref());
         let legs = super::legs::legs(&mut entries);
         let mesh_search = super::mesh_search::mesh_search(&mut entries, terrain.as_ref());
-        let [friction_raster, keep_out] = overlays(&mut entries, &surface, terrain.as_ref());
+        let [friction_raster, keep_out, keep_in] = overlays(&mut entries, &surface, terrain.as_ref());
+        let layers = super::layers::layers(&mut entries, terrain.as_ref());
         let derating = super::derating::derating(&mut entries, &hopper, &surface);
         let drive = super::drive::drive(&mut entries, terrain.as_ref(), route, hopper.limits());
         let drives = drive.as_ref().is_some_and(|keys| keys.travel.drives());
@@ -160,6 +166,8 @@ impl Scenario {
             groups: entries.face_groups("surface", "group"),
             friction_raster,
             keep_out,
+            keep_in,
+            layers,
             terrain,
             accept_map_scale: entries.flag("terrain", "accept_map_scale"),
             no_data: entries.no_data("terrain", "no_data"),
@@ -409,9 +417,9 @@ fn surface(entries: &mut Entries) -> SurfaceProperties {
     SurfaceProperties { grip, rest }
 }
 
-/// The files of the overlays on the terrain: friction raster and keep-out zones.
-fn overlays(entries: &mut Entries, surface: &SurfaceProperties, terrain: Option<&TerrainSource>) -> [Option<PathBuf>; 2] {
-    let own_columns = [("friction_raster", "friction_coefficient"), ("keep_out", "keep_out")];
+/// The files of the overlays on the terrain: friction raster, keep-out and keep-in zones.
+fn overlays(entries: &mut Entries, surface: &SurfaceProperties, terrain: Option<&TerrainSource>) -> [Option<PathBuf>; 3] {
+    let own_columns = [("friction_raster", "friction_coefficient"), ("keep_out", "keep_out"), ("keep_in", "keep_out")];
     if matches!(terrain, Some(TerrainSource::Chain { .. })) {
         for (name, column) in own_columns {
             if entries.value("surface", name).is_some() {

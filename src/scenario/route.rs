@@ -68,6 +68,7 @@ pub(super) fn route(entries: &mut Entries, terrain: Option<&TerrainSource>) -> R
 fn refuse_beside_mesh(entries: &mut Entries) {
     let refused = [
         ("surface", "keep_out", "is laid over a map"),
+        ("surface", "keep_in", "is laid over a map"),
         ("surface", "friction_raster", "is laid over a map"),
         ("hopper", "footprint_m", "is fitted over a DEM or a profile"),
         ("hopper", "roughness_max_m", "is measured over a DEM or a profile"),

@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use super::{
     CATALOGUE, Kind,
     catalogue::{MOST, SPEED_LEAST, SPEED_MOST},
+    layers::{APPLIES_TO, LAYER_KEYS},
 };
 use crate::{
     planner::{Amount, Objective},
@@ -22,6 +23,11 @@ pub fn scenario_schema() -> Value {
             tables.entry(key.table).or_insert_with(|| json!({ "type": "object", "properties": {}, "additionalProperties": false }));
         let mut value = of_kind(key.kind);
         value["description"] = key.help.into();
+        if key.kind == Kind::Layer {
+            // Layers have names of their own.
+            table["additionalProperties"] = value;
+            continue;
+        }
         table["properties"][key.name] = value;
     }
     json!({
@@ -71,6 +77,22 @@ fn of_kind(kind: Kind) -> Value {
             });
             let group = json!({ "type": "object", "properties": of_group, "additionalProperties": false, "minProperties": 1 });
             json!({ "type": "object", "additionalProperties": group, "minProperties": 1 })
+        }
+        Kind::Layer => {
+            let of_key = |(name, meaning): (&str, &str)| {
+                let mut value = match name {
+                    "raster" => of_kind(Kind::Text),
+                    "applies_to" => {
+                        let word = json!({ "enum": APPLIES_TO });
+                        json!({ "anyOf": [word, { "type": "array", "items": word, "minItems": 1 }] })
+                    }
+                    _ => json!({ "type": "number" }),
+                };
+                value["description"] = meaning.into();
+                (name.to_owned(), value)
+            };
+            let keys: Map<_, _> = LAYER_KEYS.into_iter().map(of_key).collect();
+            json!({ "type": "object", "properties": keys, "additionalProperties": false, "required": ["raster"] })
         }
         Kind::Text => json!({ "type": "string", "pattern": "\\S" }),
     }

@@ -108,6 +108,7 @@ pub(crate) fn fits(value: &toml::Value, kind: Kind) -> bool {
         Kind::Amounts => objective(value).is_some(),
         Kind::SlipCurve => slip(value).is_some(),
         Kind::FaceGroups => face_groups(value).is_some(),
+        Kind::Layer => value.as_table().is_some_and(|table| !table.is_empty()),
         Kind::Text => value.as_str().is_some_and(|text| !text.trim().is_empty()),
     }
 }

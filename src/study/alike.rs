@@ -1,8 +1,10 @@
 //! Whether a key's value affects the answer.
 
+use std::path::PathBuf;
+
 use super::Prepared;
 use crate::{
-    scenario::{Route, Scenario},
+    scenario::{LayerKeys, Route, Scenario},
     world::{Hopper, HopperLimits, SurfaceProperties},
 };
 
@@ -45,11 +47,13 @@ pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &P
         && (on_a.start, on_a.goal) == (on_b.start, on_b.goal)
         && on_a.chain.segments() == on_b.chain.segments()
         && on_a.chain.geometry().vertices() == on_b.chain.geometry().vertices()
+        && on_a.chain.geometry().layers() == on_b.chain.geometry().layers()
         && (a.route == Route::Transect || over_dem(a) == over_dem(b))
 }
 
-/// What limits hops beside the line of a slice too: the speeds, and what friction rasters leave open.
-fn over_dem(scenario: &Scenario) -> (SurfaceProperties, [f64; 2]) {
+/// What limits hops beside the line of a slice too: the speeds, what friction rasters leave open, and what is laid over the map.
+fn over_dem(scenario: &Scenario) -> (SurfaceProperties, [f64; 2], [&Option<PathBuf>; 2], &[LayerKeys]) {
     let (limits, cap_m_s) = (scenario.hopper.limits(), scenario.body.gravity.speed_cap_m_s());
-    (scenario.surface, [limits.takeoff_speed_max_m_s, limits.landing_speed_max_m_s].map(|speed_m_s| speed_m_s.min(cap_m_s)))
+    let speeds_m_s = [limits.takeoff_speed_max_m_s, limits.landing_speed_max_m_s].map(|speed_m_s| speed_m_s.min(cap_m_s));
+    (scenario.surface, speeds_m_s, [&scenario.keep_out, &scenario.keep_in], &scenario.layers)
 }

@@ -94,6 +94,8 @@ pub(super) fn format_ground(scenario: &Scenario) -> String {
         (RestSlope::Unlimited, _) => parts.push("rest slope without limit".to_owned()),
     }
     parts.extend(scenario.keep_out.as_deref().map(|path| format!("keep-out {}", file(path))));
+    parts.extend(scenario.keep_in.as_deref().map(|path| format!("keep-in {}", file(path))));
+    parts.extend(scenario.layers.iter().map(|layer| format!("layer {} {}", layer.rule.name, layer.rule.condition)));
     if !scenario.groups.is_empty() {
         let names: Vec<&str> = scenario.groups.keys().map(String::as_str).collect();
         parts.push(format!("other surfaces of {}", names.join(", ")));

@@ -45,7 +45,11 @@ fn key_of(limit: Limit, scenario: &Scenario) -> Option<&'static str> {
         | Limit::TakeoffSpeedLevels
         | Limit::TakeoffAngleStep
         | Limit::TakeoffSpeedStep
-        | Limit::HeadingStep => None,
+        | Limit::HeadingStep
+        | Limit::Stroke
+        | Limit::Force
+        | Limit::Spin
+        | Limit::Layer(_) => None,
     }
 }
 

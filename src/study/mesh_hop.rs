@@ -228,7 +228,9 @@ pub(super) fn mesh_ground(scenario: &Scenario, file: &Path, scale: f64) -> Resul
 pub(super) fn check_keys(scenario: &Scenario) -> Result<(), MeshHopError> {
     let refused = [
         ("surface.keep_out", "laid over a map", scenario.keep_out.is_some()),
+        ("surface.keep_in", "laid over a map", scenario.keep_in.is_some()),
         ("surface.friction_raster", "laid over a map", scenario.friction_raster.is_some()),
+        ("layer", "laid over a map", !scenario.layers.is_empty()),
         ("hopper.footprint_m", "fitted over a DEM or a profile", scenario.hopper.limits().footprint_m.is_some_and(|m| m > 0.0)),
     ];
     match refused.into_iter().find(|(.., given)| *given) {

@@ -24,9 +24,9 @@ use crate::{
     quantity::MapPoint,
     scenario::{Route, Scenario, TerrainSource},
     terrain::{
-        self, CoordinateSystem, Dem, DemOptions, Ellipsoid, FrictionRaster, KeepOut, MapBounds, MapPlace, MapProjection,
-        NoDataRule, OverlaidDem, OverlayEffect, Profile, Surroundings, TerrainError, check_scale, read_friction_raster,
-        read_keep_out, read_mesh_with, slice_legs, slice_mesh,
+        self, CoordinateSystem, Dem, DemOptions, Ellipsoid, FrictionRaster, KeepOut, Layer, MapBounds, MapLayers, MapPlace,
+        MapProjection, NoDataRule, OverlaidDem, OverlayEffect, Profile, Surroundings, TerrainError, check_scale,
+        read_friction_raster, read_keep_in, read_keep_out, read_layer, read_mesh_with, slice_legs, slice_mesh,
     },
     uncertainty::UncertaintyProblem,
     world::{Derating, FrictionCone},
@@ -455,7 +455,11 @@ impl Overlays {
     ) -> Result<Self, TerrainError> {
         let raster = scenario.friction_raster.as_deref().map(|path| read_friction_raster(&base.join(path), coordinates));
         let keep_out = scenario.keep_out.as_deref().map(|path| read_keep_out(&base.join(path), coordinates, bounds));
+        let keep_in = scenario.keep_in.as_deref().map(|path| read_keep_in(&base.join(path), coordinates, bounds));
+        let layers = scenario.layers.iter().map(|layer| read_layer(&base.join(&layer.raster), layer.rule, coordinates));
+        let layers = MapLayers::new(layers.collect::<Result<_, _>>()?);
         let overlays = terrain::Overlays::new(raster.transpose()?, keep_out.transpose()?);
+        let overlays = overlays.with_keep_in(keep_in.transpose()?).with_layers(layers);
         Ok(Self { constant: friction(scenario), overlays: Arc::new(overlays) })
     }
 
@@ -472,21 +476,24 @@ impl Overlays {
 
     /// The overlay files of a scenario, relative to its folder.
     pub fn files(scenario: &Scenario) -> impl Iterator<Item = &Path> {
-        [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
+        let zones = [&scenario.friction_raster, &scenario.keep_out, &scenario.keep_in].into_iter().filter_map(Option::as_deref);
+        zones.chain(scenario.layers.iter().map(|layer| layer.raster.as_path()))
     }
 
     /// A warning for each overlay without effect on a DEM of these bounds.
     pub fn without_effect_on_dem(&self, bounds: MapBounds) -> Vec<String> {
         let raster =
             self.overlays.friction().filter(|raster| !raster.covers(bounds)).map(|raster| raster.without_effect("the DEM"));
-        let keep_out = self.overlays.keep_out().filter(|zones| !zones.meets(bounds)).map(|zones| zones.without_effect("the DEM"));
-        self.not_compared().chain(raster).chain(keep_out).collect()
+        let keep_out = self.overlays.zones().filter(|zones| !zones.meets(bounds)).map(|zones| zones.without_effect("the DEM"));
+        let layers = self.overlays.layers().iter().filter_map(|layer| layer.without_choice(bounds, "the DEM"));
+        self.not_compared().chain(raster).chain(keep_out).chain(layers).collect()
     }
 
     /// A warning for each overlay whose map could not be compared with the terrain's.
     fn not_compared(&self) -> impl Iterator<Item = String> + '_ {
         let raster = self.overlays.friction().and_then(FrictionRaster::not_compared);
-        raster.into_iter().chain(self.overlays.keep_out().and_then(KeepOut::not_compared)).map(str::to_owned)
+        let layers = self.overlays.layers().iter().filter_map(Layer::not_compared);
+        raster.into_iter().chain(self.overlays.zones().filter_map(KeepOut::not_compared)).chain(layers).map(str::to_owned)
     }
 
     /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones, and a warning for each overlay
@@ -505,17 +512,19 @@ impl Overlays {
             let of_leg = self.overlays.lay(leg, constant)?;
             effect.friction |= of_leg.friction;
             effect.keep_out |= of_leg.keep_out;
+            effect.keep_in |= of_leg.keep_in;
         }
         let raster = self.overlays.friction().filter(|_| !effect.friction).map(|raster| raster.without_effect("the transect"));
         let keep_out = self.overlays.keep_out().filter(|_| !effect.keep_out).map(|zones| zones.without_effect("the transect"));
+        let keep_in = self.overlays.keep_in().filter(|_| !effect.keep_in).map(|zones| zones.without_bounds("the transect"));
         let raster_alone = legs.iter().flat_map(|leg| &leg.facets).all(|facet| facet.friction.is_some());
         let replaced = (constant.is_some() && effect.friction && raster_alone).then(|| {
             "surface.friction_coefficient has no effect: the friction raster has data under the whole transect; leave it out, or correct \
              the raster"
                 .to_owned()
         });
-        let warnings = self.not_compared().chain(raster).chain(keep_out).chain(replaced).collect();
-        Ok((PolygonalChain::from_legs(&legs, constant)?, warnings))
+        let warnings = self.not_compared().chain(raster).chain(keep_out).chain(keep_in).chain(replaced).collect();
+        Ok((PolygonalChain::from_legs(&legs, constant)?.with_layers(self.overlays.layers()), warnings))
     }
 }
 

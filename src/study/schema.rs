@@ -7,8 +7,9 @@ use crate::{
     arena::ArenaKeys,
     report::{
         ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, LegsPlanAnswer,
-        MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer,
-        RequireAnswer, SimulateAnswer, SizeAnswer, StanceAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+        LegsSimulateAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer,
+        PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, StanceAnswer, TradeAnswer, TravelAnswer,
+        TravelMapAnswer, TravelSimulateAnswer,
     },
     scenario::{robot_schema, scenario_schema},
 };
@@ -64,6 +65,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::PlanTravel => derived::<TravelAnswer>(),
         DocumentKind::Simulate => derived::<SimulateAnswer>(),
         DocumentKind::SimulateMesh => derived::<MeshSimulateAnswer>(),
+        DocumentKind::SimulateLegs => derived::<LegsSimulateAnswer>(),
         DocumentKind::SimulateTravel => derived::<TravelSimulateAnswer>(),
         DocumentKind::SimulateExperiment => derived::<ExperimentAnswer>(),
         DocumentKind::Require => derived::<RequireAnswer>(),

@@ -90,6 +90,9 @@ pub fn slice(question: &SliceQuestion<'_>) -> Result<SliceStudy, SliceStudyError
             let (chain, without_effect) = overlays.chain_with_warnings(legs.clone())?;
             comments.extend(without_effect.iter().map(|warning| format!("warning: {warning}")));
             warnings.extend(without_effect);
+            warnings.extend((!scenario.layers.is_empty()).then(|| {
+                "the chain has no columns for layers, which a path along it will not obey: plan over the DEM with them".to_owned()
+            }));
             chain
         }
         None => PolygonalChain::from_legs(&legs, None)?,

@@ -124,7 +124,12 @@ pub fn stand(question: &StanceQuestion<'_>) -> Result<Stood, StanceError> {
     let at = match (question.terrain, question.at_m) {
         (StanceTerrain::Mesh(..), (map, Some(z_m))) => Point3::new(map.x, map.y, z_m),
         (StanceTerrain::Mesh(..), (_, None)) => return Err(StanceError::NoHeight),
-        (StanceTerrain::Dem(_), (map, _)) => over(&ground, map),
+        (StanceTerrain::Dem(_), (map, _)) => {
+            let top_m = ground.tree().mesh().bounds().high_m;
+            let ground = StanceGround::new(ground.clone(), robot.clone(), ConeKind::Exact, question.up)?;
+            let z_m = ground.ground_below_m(Point3::new(map.x, map.y, top_m));
+            Point3::new(map.x, map.y, z_m.unwrap_or(top_m))
+        }
     };
     let at = on_mesh(&ground, at, "place", &mut warnings)?;
     let ground = StanceGround::new(ground, robot.clone(), ConeKind::Exact, question.up)?;
@@ -315,24 +320,4 @@ fn mesh_of(question: &StanceQuestion<'_>) -> Result<(MeshTree, Vec<String>), Sta
             Ok((MeshTree::new(mesh), Vec::new()))
         }
     }
-}
-
-/// The point of the surface of a DEM at a place: straight down from over its highest post.
-fn over(ground: &MeshGround, map: MapPoint) -> Point3<f64> {
-    let bounds = ground.tree().mesh().bounds();
-    let size_m = bounds.size_m();
-    let top = Point3::new(map.x, map.y, bounds.high_m + size_m);
-    let mut z_m = bounds.high_m;
-    ground.tree().visit(
-        |min, max| min.x <= map.x && map.x <= max.x && min.y <= map.y && map.y <= max.y,
-        |_, [a, b, c]| {
-            let normal = (b - a).cross(&(c - a));
-            let inside =
-                |from: &Point3<f64>, to: &Point3<f64>| (to - from).xy().perp(&(top - from).xy()) >= -1e-9 * size_m * size_m;
-            if normal.z > 0.0 && inside(a, b) && inside(b, c) && inside(c, a) {
-                z_m = a.z - (top - a).xy().dot(&normal.xy()) / normal.z;
-            }
-        },
-    );
-    Point3::new(map.x, map.y, z_m)
 }

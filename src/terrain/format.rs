@@ -93,13 +93,20 @@ pub fn open_dem(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DemOptions {
     no_data: NoDataRule,
+    of_any_unit: bool,
 }
 
 impl DemOptions {
     /// The same with this rule for missing elevations.
     #[must_use]
     pub const fn no_data(self, no_data: NoDataRule) -> Self {
-        Self { no_data }
+        Self { no_data, ..self }
+    }
+
+    /// The same for values that are no elevations: a `GeoTIFF` may state any unit of them.
+    #[must_use]
+    pub const fn of_any_unit(self) -> Self {
+        Self { of_any_unit: true, ..self }
     }
 
     /// The rule for missing elevations.
@@ -126,7 +133,8 @@ impl DemOptions {
     }
 
     fn context(self, path: &Path) -> Result<ReadContext, TerrainError> {
-        Ok(ReadContext { no_data: self.no_data, sidecars: Arc::new(Sidecars::beside(path)?) })
+        let sidecars = Arc::new(Sidecars::beside(path)?);
+        Ok(ReadContext { no_data: self.no_data, of_any_unit: self.of_any_unit, sidecars })
     }
 }
 
@@ -134,6 +142,7 @@ impl DemOptions {
 #[derive(Clone, Debug, Default)]
 pub struct ReadContext {
     pub(super) no_data: NoDataRule,
+    pub(super) of_any_unit: bool,
     pub(super) sidecars: Arc<Sidecars>,
 }
 

@@ -1,15 +1,17 @@
-//! A DEM with its overlays: friction by position, and keep-out zones without take-offs and landings.
+//! A DEM with its overlays: friction by position, keep-out zones without take-offs and landings, and layers with conditions.
 
 use std::sync::Arc;
 
-use super::{Dem, FrictionRaster, KeepOut, Profile, TerrainError, slice};
+use super::{Dem, FrictionRaster, KeepOut, MapLayers, Profile, TerrainError, slice};
 use crate::{quantity::MapPoint, world::FrictionCone};
 
-/// The overlays of a terrain: a friction raster and keep-out zones; either may be absent.
+/// The overlays of a terrain: a friction raster, keep-out zones and layers; any may be absent.
 #[derive(Clone, Debug, Default)]
 pub struct Overlays {
     friction: Option<FrictionRaster>,
     keep_out: Option<KeepOut>,
+    keep_in: Option<KeepOut>,
+    layers: MapLayers,
 }
 
 /// Which overlays have an effect on a profile.
@@ -17,19 +19,33 @@ pub struct Overlays {
 pub struct OverlayEffect {
     /// The raster gives the friction of a part of the profile.
     pub friction: bool,
-    /// A part of the profile lies in a zone.
+    /// A part of the profile lies in a keep-out zone.
     pub keep_out: bool,
+    /// A part of the profile lies outside the keep-in zones.
+    pub keep_in: bool,
 }
 
 impl Overlays {
     /// The overlays from a friction raster and keep-out zones.
-    pub const fn new(friction: Option<FrictionRaster>, keep_out: Option<KeepOut>) -> Self {
-        Self { friction, keep_out }
+    pub fn new(friction: Option<FrictionRaster>, keep_out: Option<KeepOut>) -> Self {
+        Self { friction, keep_out, ..Self::default() }
+    }
+
+    /// The same with keep-in zones, of [`read_keep_in`](super::read_keep_in).
+    #[must_use]
+    pub fn with_keep_in(self, keep_in: Option<KeepOut>) -> Self {
+        Self { keep_in, ..self }
+    }
+
+    /// The same with layers.
+    #[must_use]
+    pub fn with_layers(self, layers: MapLayers) -> Self {
+        Self { layers, ..self }
     }
 
     /// The same overlays, of whose friction a share counts.
     pub(crate) fn with_friction_share(&self, share: f64) -> Self {
-        Self { friction: self.friction.as_ref().map(|raster| raster.with_share(share)), keep_out: self.keep_out.clone() }
+        Self { friction: self.friction.as_ref().map(|raster| raster.with_share(share)), ..self.clone() }
     }
 
     /// The friction raster.
@@ -42,7 +58,27 @@ impl Overlays {
         self.keep_out.as_ref()
     }
 
-    /// Adds both to a profile: friction and zones of its facets, with additional points where borders cross it.
+    /// The keep-in zones.
+    pub const fn keep_in(&self) -> Option<&KeepOut> {
+        self.keep_in.as_ref()
+    }
+
+    /// All zones, of both kinds.
+    pub fn zones(&self) -> impl Iterator<Item = &KeepOut> {
+        self.keep_out.iter().chain(&self.keep_in)
+    }
+
+    /// The same zones alone.
+    pub(crate) fn zones_alone(&self) -> Self {
+        Self { keep_out: self.keep_out.clone(), keep_in: self.keep_in.clone(), ..Self::default() }
+    }
+
+    /// The layers.
+    pub const fn layers(&self) -> &MapLayers {
+        &self.layers
+    }
+
+    /// Adds friction raster and zones to a profile: friction and zones of its facets, with additional points where borders cross it.
     ///
     /// `constant` is the friction where the raster has no data.
     ///
@@ -56,6 +92,9 @@ impl Overlays {
         if let Some(zones) = &self.keep_out {
             effect.keep_out = zones.mark(profile)?;
         }
+        if let Some(zones) = &self.keep_in {
+            effect.keep_in = zones.mark(profile)?;
+        }
         Ok(effect)
     }
 
@@ -64,9 +103,9 @@ impl Overlays {
         self.friction.as_ref().and_then(|raster| raster.at(at))
     }
 
-    /// Whether a position lies in a keep-out zone.
+    /// Whether a position lies in a keep-out zone or outside the keep-in zones.
     pub fn keeps_out(&self, at: MapPoint) -> bool {
-        self.keep_out.as_ref().is_some_and(|zones| zones.keeps_out(at))
+        self.zones().any(|zones| zones.keeps_out(at))
     }
 }
 

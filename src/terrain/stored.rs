@@ -160,7 +160,7 @@ impl StoredRaster {
     /// [`Dem::new`].
     pub(super) fn finish(self, context: &ReadContext) -> Result<Dem, TerrainError> {
         let Self { rows, cols, mut posts, georeference, states_metres, south_up, scaling, step } = self;
-        let ReadContext { no_data: rule, sidecars } = context;
+        let ReadContext { no_data: rule, sidecars, .. } = context;
         let (georeference, stated_beside) = sidecars.place(georeference, (rows, cols), south_up)?;
         let lattice = PostLattice::new(rows, cols, georeference)?;
         let whole = Window { first_row: 0, first_col: 0, rows, cols };

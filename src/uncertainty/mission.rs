@@ -179,8 +179,11 @@ impl fmt::Write for Sink {
 fn limits_text(out: &mut Sink, ground: &DemGround) -> fmt::Result {
     let overlays = ground.terrain().overlays();
     let friction = overlays.friction().map(FrictionRaster::content);
-    let keep_out = overlays.keep_out().map(KeepOut::content);
-    write!(out, "{:?}{:?}{friction:?}{keep_out:?}", ground.envelope(), ground.surface())?;
+    let zones: Vec<_> = overlays.zones().map(KeepOut::content).collect();
+    write!(out, "{:?}{:?}{friction:?}{zones:?}", ground.envelope(), ground.surface())?;
+    for layer in overlays.layers().iter() {
+        write!(out, "{:?}{:?}", layer.rule(), layer.raster())?;
+    }
     let share = overlays.friction().map(FrictionRaster::share).filter(|share| *share != 1.0);
     share.map_or(Ok(()), |share| write!(out, "{share:?}"))
 }

@@ -46,6 +46,7 @@ mod exact_sum;
 pub mod experiments;
 mod hop_success;
 mod landing_tally;
+mod legs;
 mod mission;
 mod options;
 mod outcome;
@@ -69,6 +70,7 @@ pub use crate::{
     flight::{Distribution, DrawnErrors, ErrorKey, MeasuredErrors, Uncertainty, UncertaintyProblem},
     ground::LiftoffVelocity,
 };
+pub use legs::{LegsMission, LegsOutcome, LegsSummary};
 pub use mission::{MeshAims, Mission};
 pub use options::{MissionPoint, Observer, SimulationError, TrialOptions};
 pub use outcome::{OutcomeCounts, Policy, TrialOutcome};

@@ -42,8 +42,8 @@ pub enum TrialOutcome {
     SlidAtLanding,
     /// It met the ground faster than its landing speed limit, at its first contact or after a bounce.
     Damaged,
-    /// It left the chain, its plane of travel (past a bend) or the map, met no-data, came down, bounced or came to rest in a keep-out zone,
-    /// or left the body: an error made its take-off faster than escape, or it bounced off so fast.
+    /// It left the chain, its plane of travel (past a bend) or the map, met no-data, came down, bounced or came to rest in a keep-out zone
+    /// or where a layer does not hold, flew where one does not, or left the body: an error made its take-off faster than escape, or it bounced off so fast.
     Lost,
     /// No hop leads on from its estimated position (replan).
     Stuck,

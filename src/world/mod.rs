@@ -6,6 +6,7 @@ mod face_group;
 mod friction_cone;
 mod gravity;
 mod hopper;
+mod layer_name;
 mod legs;
 mod limit;
 mod prepared_cone;
@@ -23,6 +24,7 @@ pub use face_group::{FaceGroup, FaceGroups};
 pub use friction_cone::{FrictionCone, InvalidFriction};
 pub use gravity::{Gravity, InvalidGravity, InvalidRadius};
 pub use hopper::{ClearanceRule, Hopper, HopperLimits, HopperProblem, InvalidHopper};
+pub use layer_name::LayerName;
 pub use legs::{
     ConvexWorkspace, HalfSpace, InvalidHull, InvalidRobot, Limb, Robot, RobotDescription, RobotPart, RobotProblem, Shell,
     TrunkBounds, TrunkBox, Workspace, roll_pitch_yaw,

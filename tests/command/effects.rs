@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 118] = [
+const TELLING: [(&str, &str); 122] = [
     ("body.name", "moon"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -40,13 +40,17 @@ const TELLING: [(&str, &str); 118] = [
     ("hopper.preparation_energy_j", "60"),
     ("hopper.efficiency", "0.5"),
     ("robot.file", "none.toml"),
+    ("robot.cone", "kc"),
+    ("robot.up", "vertical"),
     ("surface.friction_coefficient", "0.3"),
     ("surface.rest_slope_max_deg", "1"),
     ("surface.keep_out", "none.tif"),
+    ("surface.keep_in", "none.tif"),
     ("surface.group", "{ ice = { friction_coefficient = 0.1 } }"),
     ("surface.friction_raster", "none.tif"),
     ("surface.takeoff_from_slope_deg", "[60, 90]"),
     ("surface.landing_from_slope_deg", "[-90, -60]"),
+    ("layer.NAME", "{ raster = \"none.tif\", min = 1 }"),
     ("contact.restitution_normal", "0.7"),
     ("contact.restitution_tangential", "0.9"),
     ("contact.settle_speed_m_s", "0.4"),

@@ -26,6 +26,7 @@ mod hop_on_map;
 #[cfg(unix)]
 mod interrupt;
 mod map_command;
+mod map_layers;
 mod map_starts;
 mod maps_command;
 mod measured_errors;

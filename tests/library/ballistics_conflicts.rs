@@ -78,7 +78,8 @@ impl Case {
             | Limit::LineOfSight
             | Limit::TakeoffAngleStep
             | Limit::TakeoffSpeedStep
-            | Limit::HeadingStep => {
+            | Limit::HeadingStep
+            | Limit::Layer(_) => {
                 panic!("{limit} cannot be removed")
             }
         }

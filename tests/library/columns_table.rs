@@ -102,6 +102,11 @@ fn keys_of(schema: &Value) -> Vec<(String, Value, bool)> {
     for (name, key) in schema["properties"].as_object().into_iter().flatten() {
         found.push((name.clone(), key.clone(), required(name)));
     }
+    // Keys with a name of one's own, after what they begin with.
+    for (pattern, key) in schema["patternProperties"].as_object().into_iter().flatten() {
+        let begins = pattern.trim_start_matches('^').split('[').next().unwrap_or_default();
+        found.push((format!("{begins}NAME"), key.clone(), false));
+    }
     for part in ["anyOf", "oneOf", "allOf"].iter().filter_map(|group| schema[*group].as_array()).flatten() {
         for (name, key, _) in keys_of(part) {
             // What some form of the object has may be absent.
@@ -313,10 +318,14 @@ fn document() -> String {
         writeln!(text, "\n### {name}\n\n{about}").unwrap();
         text.truncate(text.trim_end().len());
         text.push_str("\n\n");
-        match schema["enum"].as_array() {
+        match schema["enum"].as_array().or_else(|| schema["anyOf"][0]["enum"].as_array()) {
             Some(words) => {
                 let words: Vec<_> = words.iter().filter_map(Value::as_str).map(|word| format!("`{word}`")).collect();
-                writeln!(text, "One of {}.", words.join(", ")).unwrap();
+                let own = schema["anyOf"][1]["pattern"].as_str().map(|pattern| {
+                    let begins = pattern.trim_start_matches('^').split('[').next().unwrap_or_default();
+                    format!(", or `{begins}NAME` with a name of the scenario")
+                });
+                writeln!(text, "One of {}{}.", words.join(", "), own.unwrap_or_default()).unwrap();
             }
             None if keys.is_empty() => writeln!(text, "Text, as in `terrain/landing-speed`.").unwrap(),
             None => table(&mut text, &keys, name),

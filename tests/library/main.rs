@@ -40,6 +40,7 @@ mod heading_steps;
 mod layers;
 mod legs_scenes;
 mod map_equality;
+mod map_layers;
 mod map_nodes;
 mod map_objectives;
 mod map_projection;

@@ -29,7 +29,8 @@ fn over(text: &str) -> String {
 fn is_off_a_mesh(key: &Key) -> bool {
     matches!(
         (key.table, key.name),
-        ("surface", "keep_out" | "friction_raster")
+        ("surface", "keep_out" | "keep_in" | "friction_raster")
+            | ("layer", _)
             | ("hopper", "footprint_m" | "roughness_max_m")
             | ("contact", _)
             | ("terrain", "start_x_m" | "goal_x_m" | "accept_map_scale" | "via_m" | "via_lonlat_deg")
@@ -91,6 +92,14 @@ fn value(key: &Key) -> BoxedStrategy<String> {
                 format!("{{ {} }}", groups.iter().map(group).collect::<Vec<_>>().join(", "))
             })
             .boxed(),
+        Kind::Layer => (-1000..1000_i32, any::<bool>(), 0..3_usize)
+            .prop_map(|(hundredths, both, applied)| {
+                let min = f64::from(hundredths) / 100.0;
+                let max = if both { format!(", max = {:?}", min + 0.5) } else { String::new() };
+                let applies_to = ["\"contact\"", "\"flight\"", "[\"flight\", \"contact\"]"][applied];
+                format!("{{ raster = \"a.tif\", min = {min:?}{max}, applies_to = {applies_to} }}")
+            })
+            .boxed(),
         Kind::SlipCurve => proptest::collection::btree_map(-89..89_i32, 0.0..0.9_f64, 0..4)
             .prop_map(|points| {
                 let points: Vec<_> = points.iter().map(|(slope, share)| format!("[{slope}.0, {share:?}]")).collect();
@@ -131,7 +140,7 @@ fn toml() -> impl Strategy<Value = String> {
             ("terrain", "mesh" | "mesh_scale") => ground == 3,
             ("terrain", "start_m" | "goal_m" | "via_m") => (ground == 1 && !degrees) || ground == 3,
             ("terrain", "start_lonlat_deg" | "goal_lonlat_deg" | "via_lonlat_deg") => ground == 1 && degrees,
-            ("surface", "keep_out") => ground != 2,
+            ("surface", "keep_out" | "keep_in") | ("layer", _) => ground != 2,
             // Random speeds exclude each other more often than not.
             ("hopper", "takeoff_speed_min_m_s") => !points && degrees,
             ("hopper", "takeoff_speed_levels_m_s") => !points && !degrees,
@@ -258,6 +267,7 @@ fn every_key_reaches_the_document() {
         Kind::Speeds => "[2.0, 4.5]",
         Kind::Amounts => "[\"energy\", \"hops\"]",
         Kind::FaceGroups => "{ ice = { friction_coefficient = 0.125, keep_out = true, rest_slope_max_deg = \"inf\" } }",
+        Kind::Layer => "{ raster = 'a.tif', equals = 255.0, applies_to = 'flight' }",
         Kind::MapPoints | Kind::LonLats => "[[12.5, -3.0], [1.0, 2.0]]",
         Kind::SlipCurve => "[[-5.0, 0.0], [20.0, 0.25]]",
         Kind::Count { .. } if key.name == "neighbours" => "32",
@@ -330,6 +340,7 @@ fn every_key_reaches_the_document() {
         // A table of tables is written in another notation there.
         let given = match key.kind {
             Kind::FaceGroups => r#"{"ice": {"friction_coefficient": 0.125, "keep_out": true, "rest_slope_max_deg": "inf"}}"#,
+            Kind::Layer => r#"{"raster": "a.tif", "equals": 255.0, "applies_to": "flight"}"#,
             _ => alone(key),
         };
         let expected = given.parse().unwrap_or_else(|_| serde_json::Value::from(given));

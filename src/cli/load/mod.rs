@@ -217,6 +217,8 @@ fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends
         for (key, path) in source.entries.files().into_iter().filter(|(_, path)| path != "-") {
             source.entries.redirect(key, &source.base.join(path).to_string_lossy());
         }
+        let base = source.base.clone();
+        source.entries.redirect_layers(|path| base.join(path).to_string_lossy().into_owned());
         source.entries.set_by_option("TERRAIN", "terrain", "dem", input.file.to_string_lossy().into_owned().into());
         source.base = PathBuf::new();
     }
@@ -224,11 +226,16 @@ fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends
         for key in SLICED_TERRAIN {
             source.entries.forget("terrain", key);
         }
-        for key in ["friction_raster", "keep_out"] {
+        for key in ["friction_raster", "keep_out", "keep_in"] {
             if source.entries.forget("surface", key) {
                 let warning = format!("surface.{key} is laid over terrain when it is sliced: for a chain its own columns count");
                 output::warn(common.quiet, &warning);
             }
+        }
+        for name in source.entries.names_in("layer") {
+            source.entries.forget("layer", &name);
+            let warning = format!("layer.{name} is laid over a map: it has no effect on a chain that is given by itself");
+            output::warn(common.quiet, &warning);
         }
         // The measured errors of a scenario beside the chain lie where that scenario does.
         for (key, path) in

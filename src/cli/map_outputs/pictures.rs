@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use chta::{
-    figure::{Caption, GoalMark, HopMapFigure, MapPosts, ValueMapFigure, draw_hop_map, draw_value_map},
+    figure::{Caption, GoalMark, HopMapFigure, MapPosts, RefusedPosts, ValueMapFigure, draw_hop_map, draw_value_map},
     path::HopPath,
     planner::Amount,
     quantity::MapPoint,
@@ -13,7 +13,6 @@ use chta::{
         conditions,
         map::{MapStudy, PreparedMap},
     },
-    terrain::KeepOut,
 };
 
 use crate::cli::{Failure, map_input::MapInput, output};
@@ -52,13 +51,12 @@ pub(super) fn map(input: &MapInput, prepared: &PreparedMap, study: &MapStudy, fi
         return output::encoded(draw_value_map(&figure), file);
     }
     let can_return: Option<Vec<bool>> = back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
-    let kept_out = prepared.ground.terrain().overlays().keep_out().map(|zones| kept_out(prepared, zones));
     let figure = HopMapFigure {
         caption: Caption { title: format!("Where in how few hops: {}", input.title()), lines },
         posts,
         hops: &out.hops,
         can_return: can_return.as_deref(),
-        kept_out: kept_out.as_deref(),
+        refused: refused(prepared),
         starts,
         goals: marks,
         paths: ways,
@@ -72,11 +70,22 @@ fn places(start: MapPoint, path: &HopPath) -> Vec<MapPoint> {
     std::iter::once(start).chain(landings).collect()
 }
 
-/// Which posts of the map lie in a keep-out zone.
-fn kept_out(prepared: &PreparedMap, zones: &KeepOut) -> Vec<bool> {
-    let nodes = prepared.nodes();
-    let posts = (0..prepared.lattice.count()).map(|index| prepared.lattice.node(index));
-    posts.map(|post| zones.keeps_out(nodes.post(post.row, post.col))).collect()
+/// Which posts of the map refuse every contact: in a keep-out zone or outside the keep-in zones, and by each layer on contacts.
+fn refused(prepared: &PreparedMap) -> Vec<RefusedPosts> {
+    let (nodes, overlays) = (prepared.nodes(), prepared.ground.terrain().overlays());
+    let where_refused = |refuses: &dyn Fn(MapPoint) -> bool| {
+        let posts = (0..prepared.lattice.count()).map(|index| prepared.lattice.node(index));
+        posts.map(|post| refuses(nodes.post(post.row, post.col))).collect()
+    };
+    let zones = overlays
+        .zones()
+        .next()
+        .map(|_| RefusedPosts { reason: "keep-out".to_owned(), posts: where_refused(&|at| overlays.keeps_out(at)) });
+    let layers = overlays.layers().iter().filter(|layer| layer.rule().on_contact).map(|layer| RefusedPosts {
+        reason: format!("layer {} does not hold", layer.rule().name),
+        posts: where_refused(&|at| !layer.holds_at(at)),
+    });
+    zones.into_iter().chain(layers).collect()
 }
 
 /// The subtitle of the picture: the map's assumptions and a summary of its result.

@@ -8,8 +8,10 @@ use crate::{
     draw::Draw,
     ground::DemGround,
     quantity::{Angle, MapPoint},
-    terrain::{Dem, GeoReference, OverlaidDem, Overlays, read_keep_out},
-    world::{Gravity, Hopper, Neighbours, RestSlope, Rover, RoverLimits, SlipCurve, SurfaceProperties},
+    terrain::{
+        Dem, GeoReference, LayerCondition, LayerRule, MapLayers, OverlaidDem, Overlays, read_keep_out, read_layer, write_geotiff,
+    },
+    world::{Gravity, Hopper, LayerName, Neighbours, RestSlope, Rover, RoverLimits, SlipCurve, SurfaceProperties},
 };
 
 /// The ground of a DEM with zones; the hopper and its surface have no effect on driving.
@@ -39,6 +41,21 @@ fn zones(draw: &mut Draw, dem: &Dem) -> Overlays {
     Overlays::new(None, Some(read_keep_out(&file, None, bounds).unwrap()))
 }
 
+/// A layer of few cells that do not hold, some of them without data.
+fn layers(draw: &mut Draw, dem: &Dem) -> MapLayers {
+    let (bounds, steps) = (dem.bounds(), [dem.georeference().dx_m(), dem.georeference().dy_m()]);
+    let scale = draw.uniform(0.5, 2.0);
+    let corner = MapPoint::new(bounds.min.x - scale * steps[0] * draw.unit(), bounds.max.y + scale * steps[1] * draw.unit());
+    let map = GeoReference::local(corner, scale * steps[0], scale * steps[1]).unwrap();
+    let values = (0..30 * 30).map(|_| if draw.chance(0.02) { f64::NAN } else { draw.unit() }).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("layer.tif");
+    write_geotiff(&Dem::new(30, 30, values, map).unwrap(), std::fs::File::create(&file).unwrap()).unwrap();
+    let condition = LayerCondition { min: Some(0.04), ..LayerCondition::default() };
+    let rule = LayerRule { name: LayerName::new("sun").unwrap(), condition, on_contact: true, on_flight: false };
+    MapLayers::new(vec![read_layer(&file, rule, None).unwrap()])
+}
+
 /// Ground with walls, gaps and terraces whose slopes are those of the limits, and perhaps a zone.
 fn ugly_ground(draw: &mut Draw, rows: usize, cols: usize) -> DemGround {
     let (dx_m, dy_m) = (draw.log_uniform(0.3, 3.0), draw.log_uniform(0.3, 3.0));
@@ -57,6 +74,7 @@ fn ugly_ground(draw: &mut Draw, rows: usize, cols: usize) -> DemGround {
     let map = GeoReference::local(MapPoint::new(draw.uniform(-9.0, 9.0), 70.0), dx_m, dy_m).unwrap();
     let dem = Dem::new(rows, cols, heights, map).unwrap();
     let overlays = if draw.chance(0.4) { zones(draw, &dem) } else { Overlays::default() };
+    let overlays = if draw.chance(0.3) { overlays.with_layers(layers(draw, &dem)) } else { overlays };
     ground(dem, overlays, draw.log_uniform(1e-5, 25.0))
 }
 

@@ -71,6 +71,15 @@ pub struct GoalMark {
     pub hops: Option<u64>,
 }
 
+/// The posts of a map that refuse every contact for one reason.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RefusedPosts {
+    /// The reason in the legend, such as "keep-out".
+    pub reason: String,
+    /// Whether it is that of each post, row-major from the north-west.
+    pub posts: Vec<bool>,
+}
+
 /// A hop map.
 #[derive(Clone, Debug)]
 pub struct HopMapFigure<'a> {
@@ -83,8 +92,8 @@ pub struct HopMapFigure<'a> {
     pub hops: &'a [i16],
     /// Whether a start can be reached again from each post, in the same order; `None` if not requested.
     pub can_return: Option<&'a [bool]>,
-    /// Whether each post lies in a keep-out zone, in the same order; `None` without zones.
-    pub kept_out: Option<&'a [bool]>,
+    /// Posts that refuse every contact, by reason: of several reasons for one post the first counts.
+    pub refused: Vec<RefusedPosts>,
     /// The starts.
     pub starts: Vec<MapPoint>,
     /// The goals.

@@ -12,14 +12,16 @@ use super::{
         sheet::Sheet,
     },
     check_size,
-    data::{HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, MapPosts},
+    data::{HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, MapPosts, RefusedPosts},
     panel::{MapPanel, end_keys, start_symbol},
     raster::{self, Pattern, Window, tone},
 };
 
 /// Posts that are not reached: grey, which is not a colour of any band.
 pub(super) const NOT_REACHED: RGBColor = RGBColor(205, 205, 205);
-const KEEP_OUT: &str = "keep-out, not reached";
+/// Posts that refuse every contact, by the number of their reason: the first as those not reached, further ones in pale tints.
+const REFUSED: [RGBColor; 5] =
+    [NOT_REACHED, RGBColor(222, 196, 160), RGBColor(170, 196, 222), RGBColor(214, 176, 204), RGBColor(160, 160, 160)];
 const NO_WAY_BACK: &str = "reached, no path back to the start";
 const NO_WAY_BACK_TO_ANY: &str = "reached, no path back to a start";
 /// The legend symbol of no-data: white in a thin frame.
@@ -33,7 +35,8 @@ pub(super) fn no_data_symbol(sheet: &mut Sheet, (x, y): (f64, f64)) {
 ///
 /// Bands of one count each, or of several if there are more than eight; grey: not reached; white: no data. With
 /// [`HopMapFigure::can_return`], stripes: reached, but the start cannot be reached from there; dots: not reached, but the start can
-/// be reached from there. With [`HopMapFigure::kept_out`], crossed stripes: keep-out zones. A DEM of more than 2 000 rows or
+/// be reached from there. Crossed stripes: posts that refuse every contact, in a tint for each reason
+/// ([`HopMapFigure::refused`]). A DEM of more than 2 000 rows or
 /// columns is drawn with every n-th post, and the map says so.
 ///
 /// # Errors
@@ -43,18 +46,21 @@ pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
     if let Some(can_return) = figure.can_return {
         check_size("map of posts from which the start can be reached", &figure.posts, can_return.len())?;
     }
-    if let Some(kept_out) = figure.kept_out {
-        check_size("map of keep-out posts", &figure.posts, kept_out.len())?;
+    for refused in &figure.refused {
+        check_size("map of refused posts", &figure.posts, refused.posts.len())?;
     }
     let counts = Counts::of(figure);
     let mut tones: Vec<_> = (0..counts.bands.len()).map(|class| tone(counts.classes.colour(class))).collect();
+    let not_reached = tones.len();
     tones.push(NOT_REACHED);
+    tones.extend(REFUSED.iter().cycle().take(figure.refused.len()));
     let posts = figure.posts;
     let window = Window::whole(posts.dem);
     let pixels = raster::draw(posts.dem, &window, &tones, |row, col| {
         let at = posts.index(row, col);
         let hops = figure.hops[at];
-        let class = class_of(&counts.classes, hops).unwrap_or(tones.len() - 1);
+        let refused = || reason_of(figure, at).map_or(not_reached, |reason| not_reached + 1 + reason);
+        let class = class_of(&counts.classes, hops).unwrap_or_else(refused);
         (hops != HOPS_NO_DATA).then(|| (class, pattern_of(figure, at)))
     });
     let mut sheet = Sheet::default();
@@ -63,7 +69,7 @@ pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
     let end_mm = map.draw(&mut sheet, pixels);
     map.paths(&mut sheet, &figure.paths);
     map.ends(&mut sheet, &figure.starts, &figure.goals, &figure.paths);
-    let mut entries = counts.keys(&tones);
+    let mut entries = counts.keys(figure, &tones);
     let uncounted_starts = if counts.start == 0 { &figure.starts[..] } else { &[] };
     entries.extend(end_keys(uncounted_starts, &figure.goals, &figure.paths));
     let end_mm = keys::draw(&mut sheet, &entries, end_mm + 3.0);
@@ -109,12 +115,17 @@ fn class_of(classes: &HopClasses, hops: i16) -> Option<usize> {
     u64::try_from(hops).ok().map(|hops| classes.of(hops))
 }
 
+/// The number of the reason by which a post that is not reached refuses every contact.
+fn reason_of(figure: &HopMapFigure<'_>, at: usize) -> Option<usize> {
+    let refuses = |refused: &RefusedPosts| refused.posts[at];
+    (figure.hops[at] == HOPS_UNREACHABLE).then(|| figure.refused.iter().position(refuses)).flatten()
+}
+
 /// The pattern over a post's colour.
 fn pattern_of(figure: &HopMapFigure<'_>, at: usize) -> Pattern {
     let hops = figure.hops[at];
-    let is_kept_out = figure.kept_out.is_some_and(|kept_out| kept_out[at]);
     match figure.can_return.map(|can_return| can_return[at]) {
-        _ if is_kept_out && hops == HOPS_UNREACHABLE => Pattern::Crossed,
+        _ if reason_of(figure, at).is_some() => Pattern::Crossed,
         _ if hops == HOPS_NOT_SEARCHED => Pattern::Striped,
         Some(false) if hops >= 0 => Pattern::Striped,
         Some(true) if hops == HOPS_UNREACHABLE => Pattern::Dotted,
@@ -131,7 +142,8 @@ struct Counts {
     no_data: u64,
     one_way: u64,
     back_only: u64,
-    kept_out: u64,
+    /// By reason.
+    refused: Vec<u64>,
     not_searched: u64,
     asks_return: bool,
     several_starts: bool,
@@ -154,7 +166,7 @@ impl Counts {
             no_data: 0,
             one_way: 0,
             back_only: 0,
-            kept_out: 0,
+            refused: vec![0; figure.refused.len()],
             not_searched: 0,
             asks_return,
             several_starts: figure.starts.len() > 1,
@@ -162,12 +174,15 @@ impl Counts {
         };
         for (at, &hops) in figure.hops.iter().enumerate() {
             let pattern = pattern_of(figure, at);
+            if let Some(reason) = reason_of(figure, at) {
+                counts.refused[reason] += 1;
+                continue;
+            }
             match class_of(&counts.classes, hops) {
                 Some(_) if hops == 0 => counts.start += 1,
                 Some(class) => counts.bands[class] += 1,
                 None if hops == HOPS_NO_DATA => counts.no_data += 1,
                 None if hops == HOPS_NOT_SEARCHED => counts.not_searched += 1,
-                None if pattern == Pattern::Crossed => counts.kept_out += 1,
                 None => counts.not_reached += 1,
             }
             match pattern {
@@ -179,7 +194,7 @@ impl Counts {
         counts
     }
 
-    fn keys(&self, tones: &[RGBColor]) -> Vec<(Swatch, String)> {
+    fn keys(&self, figure: &HopMapFigure<'_>, tones: &[RGBColor]) -> Vec<(Swatch, String)> {
         let texts = self.classes.texts();
         let (no_way_back, back_only) = if self.several_starts {
             (NO_WAY_BACK_TO_ANY, "not reached, but with a path to a start")
@@ -191,15 +206,17 @@ impl Counts {
         let rest = [
             (Swatch::Fill(NOT_REACHED), "not reached", self.not_reached),
             (Swatch::Striped(NOT_REACHED), "farther or not reachable, not searched", self.not_searched),
-            (Swatch::Crossed(NOT_REACHED), KEEP_OUT, self.kept_out),
             (Swatch::Symbol(no_data_symbol), "no data", self.no_data),
             (Swatch::Striped(tones[0]), no_way_back, self.one_way),
             (Swatch::Dotted(NOT_REACHED), back_only, self.back_only),
         ];
         let start = (Swatch::Symbol(start_symbol), "start", self.start);
+        let reasons: Vec<String> = figure.refused.iter().map(|refused| format!("{}, not reached", refused.reason)).collect();
+        let refused = reasons.iter().zip(&self.refused).zip(REFUSED.iter().cycle());
+        let refused = refused.map(|((reason, count), tone)| (Swatch::Crossed(*tone), reason.as_str(), *count));
         // A count of 0 posts without a return path is shown too, if return paths were requested.
         let is_told = |&(_, text, count): &(Swatch, &str, u64)| count > 0 || (self.asks_return && text == no_way_back);
-        let all = std::iter::once(start).chain(bands).chain(rest).filter(is_told);
+        let all = std::iter::once(start).chain(bands).chain(rest).chain(refused).filter(is_told);
         all.map(|(swatch, text, count)| (swatch, format!("{text}: {count} {}{}", self.node, if count == 1 { "" } else { "s" })))
             .collect()
     }

@@ -16,7 +16,7 @@ mod values;
 
 pub use data::{
     GoalMark, HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure,
-    MapPosts, ValueMapFigure,
+    MapPosts, RefusedPosts, ValueMapFigure,
 };
 pub use hops::draw_hop_map;
 pub use landings::draw_landing_map;

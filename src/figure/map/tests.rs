@@ -47,7 +47,7 @@ fn hop_map<'a>(posts: MapPosts<'a>, hops: &'a [i16], can_return: Option<&'a [boo
     let goals = vec![GoalMark { at: at(20, 80), hops: Some(7) }, GoalMark { at: at(88, 30), hops: None }];
     let path = vec![at(50, 50), at(44, 55), at(40, 62), at(31, 66), at(25, 72), at(20, 80)];
     let caption = Caption::new("A map", "Moon, g = 1.624 m/s²; take-off speed ≤ 10 m/s; friction coefficient 0.6");
-    HopMapFigure { caption, posts, hops, can_return, kept_out: None, starts: vec![at(50, 50)], goals, paths: vec![path] }
+    HopMapFigure { caption, posts, hops, can_return, refused: Vec::new(), starts: vec![at(50, 50)], goals, paths: vec![path] }
 }
 
 fn drawn(name: &str, posts: MapPosts<'_>, per_hop: f64, most: f64, with_return: bool) -> Picture {
@@ -157,11 +157,17 @@ fn keep_out_posts_are_a_separate_class_and_zero_posts_without_return_path_are_st
         })
         .collect();
     // A zone over the first two rows, and one over a reached post on a border, which keeps its class.
-    let kept_out: Vec<bool> = (0..240).map(|i| i < 40 || i == 100).collect();
-    let figure = HopMapFigure { kept_out: Some(&kept_out), ..hop_map(posts, &hops, Some(&[true; 240])) };
+    let class = |reason: &str, posts: &dyn Fn(usize) -> bool| RefusedPosts {
+        reason: reason.to_owned(),
+        posts: (0..240).map(posts).collect(),
+    };
+    // Of the third row, five posts are dark; of those in the zone the zone counts.
+    let refused = vec![class("keep-out", &|i| i < 40 || i == 100), class("layer sun does not hold", &|i| (30..45).contains(&i))];
+    let figure = HopMapFigure { refused, ..hop_map(posts, &hops, Some(&[true; 240])) };
     let picture = check_picture("hops-keep-out", || draw_hop_map(&figure).unwrap());
     let lettering = texts(&picture);
-    for words in ["keep-out, not reached: 40 posts", "not reached: 20 posts", "no path back to the start: 0 posts"] {
+    let words = ["keep-out, not reached: 40 posts", "layer sun does not hold, not reached: 5 posts", "not reached: 15 posts"];
+    for words in words.into_iter().chain(["no path back to the start: 0 posts"]) {
         assert!(lettering.lines().any(|line| line.ends_with(words)), "{words:?} is missing in {lettering}");
     }
     let image = &picture.sheet.images[0].pixels;
@@ -170,7 +176,10 @@ fn keep_out_posts_are_a_separate_class_and_zero_posts_without_return_path_are_st
     let inked = |row: usize| (0..of_a_row).filter(|at| image.bytes[row * of_a_row + at] == 1).count();
     assert!(inked(0).abs_diff(of_a_row * 32 / 81) < of_a_row / 40, "{} of {of_a_row} under stripes", inked(0));
     assert_eq!(inked(5), 0, "no pattern over reached posts");
-    assert!(draw_hop_map(&HopMapFigure { kept_out: Some(&[true; 3]), ..figure }).is_err());
+    assert!(
+        draw_hop_map(&HopMapFigure { refused: vec![RefusedPosts { reason: String::new(), posts: vec![true; 3] }], ..figure })
+            .is_err()
+    );
 }
 
 fn value_map<'a>(posts: MapPosts<'a>, values: &'a [f64], name: &str) -> ValueMapFigure<'a> {

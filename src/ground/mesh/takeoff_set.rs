@@ -147,6 +147,31 @@ impl MeshWindow {
 }
 
 impl MeshTakeoffSet {
+    /// The same with windows that further limits narrow: `pushable` gives what they leave of one, with the limits beyond the ends that moved, or
+    /// the limit that leaves nothing.
+    pub(in crate::ground) fn narrowed(
+        mut self,
+        pushable: impl Fn(SlopeInterval) -> Result<(SlopeInterval, [Option<Limit>; 2]), Limit>,
+    ) -> Self {
+        let (mut kept, mut refused) = (Vec::new(), None);
+        for window in &self.windows {
+            match pushable(window.lofts) {
+                Ok((lofts, by)) => {
+                    let end =
+                        |known: MeshWindowEnd, by: Option<Limit>| by.map_or(known, |limit| MeshWindowEnd { limit, facet: None });
+                    kept.push(MeshWindow { lofts, lower: end(window.lower, by[0]), upper: end(window.upper, by[1]) });
+                }
+                Err(limit) => refused = refused.or(Some(limit)),
+            }
+        }
+        self.windows = kept;
+        if let Some(limit) = refused.filter(|_| self.windows.is_empty()) {
+            let nothing = LimitInterval::new(limit, SlopeInterval::EMPTY, None);
+            self.conflict = Some(MeshConflict::Limits(Conflict::Alone(nothing)));
+        }
+        self
+    }
+
     /// The course of the hop.
     pub const fn course(&self) -> &MeshCourse {
         &self.course

@@ -40,8 +40,8 @@ impl OverlayTable {
     /// [`TerrainError::Overlay`] if a mask does not cover the terrain, or friction is missing in the raster and as a constant.
     pub(crate) fn new(terrain: &OverlaidDem, constant: Option<FrictionCone>) -> Result<Option<Self>, TerrainError> {
         let (dem, overlays) = (terrain.dem(), terrain.overlays());
-        let (friction, keep_out) = (overlays.friction(), overlays.keep_out());
-        if friction.is_none() && keep_out.is_none() {
+        let friction = overlays.friction();
+        if friction.is_none() && overlays.zones().next().is_none() {
             return Ok(None);
         }
         let (rows, cols) = (dem.rows(), dem.cols());
@@ -68,7 +68,7 @@ impl OverlayTable {
         if let Some(raster) = friction {
             raster.borders(&mut |border| squares.mark(border));
         }
-        if let Some(zones) = keep_out {
+        for zones in overlays.zones() {
             // Short pieces of borders have small bounding boxes, so they mark few squares without a border.
             zones.borders(dem.georeference().step_m(), &mut |border| squares.mark(border));
         }

@@ -4,6 +4,8 @@
 //! arithmetic differs from theirs only by rounding; it decides where the margin to the limits is far above rounding. Closer pairs,
 //! and all pairs near a border of a zone or of friction, where the slice has more vertices, are left to the slice and the hop test.
 
+use rayon::prelude::*;
+
 use super::{
     MapError, Post, exact,
     facet_table::{FacetTable, Footing},
@@ -44,6 +46,8 @@ pub struct PostHops {
     pub(super) overlays: Option<OverlayTable>,
     /// The ground under the footprint of every node, if the hopper has one.
     pub(super) footings: Option<FootingTable>,
+    /// Whether a layer refuses every contact at each node; empty where none does.
+    refused: Vec<bool>,
     grip: Option<QuickGrip>,
     /// For each block, how many of the nearest offsets are within reach of its nodes.
     pub(super) within_reach: Vec<usize>,
@@ -71,6 +75,16 @@ fn surface(ground: &DemGround, lattice: NodeLattice) -> Result<OverlaidDem, MapE
         return Ok(terrain.clone());
     }
     Ok(OverlaidDem::new(terrain.dem().finer(lattice.per_post)?, terrain.overlays().clone()))
+}
+
+/// For every node whether a layer refuses every contact there; empty if no layer is about contacts.
+fn refused_by_layers(ground: &DemGround, lattice: NodeLattice) -> Vec<bool> {
+    if !ground.layers().iter().any(|layer| layer.rule().on_contact) {
+        return Vec::new();
+    }
+    let map = ground.terrain().dem().georeference();
+    let refuses = |node: usize| ground.layers().refusing_contact(lattice.at(map, lattice.node(node))).is_some();
+    (0..lattice.count()).into_par_iter().map(refuses).collect()
 }
 
 /// The result of fast arithmetic on a pair.
@@ -117,6 +131,7 @@ impl PostHops {
         // With a footprint, the plane fitted over it is held against the rest slope, not the facets.
         let rest = |post| rest_tangent(&ground, overlays.as_ref(), post).filter(|_| footings.is_none());
         let facets = FacetTable::new(heights, &rest);
+        let refused = refused_by_layers(&ground, lattice);
         let grip = match ground.surface().grip {
             Some(Grip::Friction(cone)) => Some(QuickGrip::friction(cone)),
             Some(Grip::FromSlope { takeoff, landing }) => Some(QuickGrip::from_slope(takeoff, landing)),
@@ -132,8 +147,21 @@ impl PostHops {
         let within_reach = Vec::new();
         let clearance = ground.envelope().clearance();
         let by_vertices = lattice.per_post > 1 && clearance.height_m() > 0.0 && !clearance.has_kinks();
-        let mut hops =
-            Self { ground, surface, scale, lattice, table, facets, overlays, footings, grip, within_reach, coarse, by_vertices };
+        let mut hops = Self {
+            ground,
+            surface,
+            scale,
+            lattice,
+            table,
+            facets,
+            overlays,
+            footings,
+            refused,
+            grip,
+            within_reach,
+            coarse,
+            by_vertices,
+        };
         hops.set_reach()?;
         Ok(hops)
     }
@@ -198,7 +226,27 @@ impl PostHops {
 
     /// Whether a hop in some direction may begin or end at a node.
     pub(crate) fn usable(&self, node: Post) -> bool {
-        self.facets.usable(self.lattice.raster_index(node)) && !self.never_stands(node)
+        self.facets.usable(self.lattice.raster_index(node)) && !self.never_stands(node) && !self.refused_by_layer(node)
+    }
+
+    /// Whether a layer refuses every contact at a node.
+    #[inline]
+    fn refused_by_layer(&self, node: Post) -> bool {
+        self.refused.get(self.lattice.index(node)).copied().unwrap_or(false)
+    }
+
+    /// Whether a layer refuses a hop from a node by an offset: a contact, or the flight.
+    #[inline]
+    fn layers_refuse(&self, from: Post, offset: &Offset) -> bool {
+        if self.ground.layers().is_empty() {
+            return false;
+        }
+        let Some(to) = self.moved(from, offset.rows, offset.cols) else { return true };
+        if self.refused_by_layer(from) || self.refused_by_layer(to) {
+            return true;
+        }
+        let map = self.ground.terrain().dem().georeference();
+        self.ground.layers().refusing_flight(self.lattice.at(map, from), self.lattice.at(map, to)).is_some()
     }
 
     /// Whether the ground under the footprint at a node allows no contact in any direction. Beside the borders of a friction raster, the
@@ -311,6 +359,9 @@ impl PostHops {
         let walk = Walk { from: takeoff, turn: offset.turn, base_m: takeoff_m, rise_m, most };
         let (crossings, kinks) = (self.table.crossings_of(offset), self.table.kinks_of(offset));
         let Some(terrain) = heights.clearing_loft(walk, crossings, kinks) else { return Verdict::No };
+        if self.layers_refuse(from, offset) {
+            return Verdict::No;
+        }
         if self.facets.gaps && offset.departure.along_edge() && !self.has_facets_along(takeoff, offset) {
             return Verdict::No;
         }

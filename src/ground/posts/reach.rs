@@ -196,11 +196,12 @@ impl PostHops {
         let finer = if lattice.per_post > 1 { size_of::<f64>() * nodes } else { 0 };
         let (down, across) = lattice.blocks();
         let overlays = ground.terrain().overlays();
-        let has_overlays = overlays.friction().is_some() || overlays.keep_out().is_some();
+        let has_overlays = overlays.friction().is_some() || overlays.zones().next().is_some();
         let facets = 3 * posts;
         let footings = if ground.footprint.is_some() { nodes } else { 0 };
         let (overlay, overlay_preparation) = if has_overlays { OverlayTable::bytes(posts) } else { (0, 0) };
-        let held = finer + facets + footings + overlay + OffsetTable::bytes(offsets, crossings) + 64 * down * across;
+        let refused = if overlays.layers().is_empty() { 0 } else { nodes };
+        let held = finer + facets + footings + refused + overlay + OffsetTable::bytes(offsets, crossings) + 64 * down * across;
         let preparation = facets.max(overlay_preparation).max(OffsetTable::preparation_bytes(offsets, crossings));
         Ok(PostHopsSize { nodes, offsets, bytes: held as u64, preparation_bytes: preparation as u64 })
     }

@@ -7,7 +7,7 @@ use crate::{
     chain::FootprintRefusal,
     ground::DemGround,
     quantity::Angle,
-    world::{FrictionCone, RestSlope},
+    world::{FrictionCone, LayerName, RestSlope},
 };
 
 /// Why no hop begins or ends at a post.
@@ -17,6 +17,8 @@ pub enum PostRefusal {
     NoGround,
     /// Inside a keep-out zone.
     KeptOut,
+    /// A layer of the map does not hold there.
+    Layer(LayerName),
     /// All its facets are too steep to rest on.
     TooSteep {
         /// The slope of the least steep facet.
@@ -33,6 +35,7 @@ impl fmt::Display for PostRefusal {
         match self {
             Self::NoGround => write!(formatter, "has no elevation around it"),
             Self::KeptOut => write!(formatter, "lies in a keep-out zone"),
+            Self::Layer(layer) => write!(formatter, "is refused by the layer {layer}"),
             Self::Footprint(refusal) => write!(formatter, "is refused: {refusal}"),
             Self::TooSteep { slope, rest_slope } => {
                 let (slope_deg, rest_deg) = (slope.degrees(), rest_slope.degrees());
@@ -62,6 +65,9 @@ impl PostHops {
         let place = self.lattice.at(self.ground.terrain().dem().georeference(), node);
         if self.ground.terrain().overlays().keeps_out(place) {
             return Some(PostRefusal::KeptOut);
+        }
+        if let Some(layer) = self.ground.terrain().overlays().layers().refusing_contact(place) {
+            return Some(PostRefusal::Layer(layer));
         }
         if self.usable(node) {
             return None;

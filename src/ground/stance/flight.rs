@@ -83,6 +83,16 @@ impl StanceGround {
         for part in buffers.mesh.blocked.free_in(within) {
             buffers.mesh.free.extend(speeds.windows(sight, part.lofts, gravity).map(|window| window.lofts));
         }
+        if self.limits_pushes() {
+            let ends = [takeoff, landing];
+            buffers.mesh.free.retain_mut(|lofts| match self.pushable(ends, (heading, sight), *lofts) {
+                Ok((allowed, _)) => {
+                    *lofts = allowed;
+                    true
+                }
+                Err(_) => false,
+            });
+        }
         Some((sight, &buffers.mesh.free))
     }
 
@@ -98,7 +108,12 @@ impl StanceGround {
         let limits = envelope_limits(self.mesh().envelope(), course.sight, Ok(from), Ok(to));
         let mut blocked = BlockedLofts::default();
         self.block(&course, [takeoff, landing], SlopeInterval { lower: 0.0, upper: f64::INFINITY }, &mut blocked);
-        Some(self.mesh().set_of(course, limits, &blocked))
+        let set = self.mesh().set_of(course, limits, &blocked);
+        if !self.limits_pushes() {
+            return Some(set);
+        }
+        let ends = [takeoff, landing];
+        Some(set.narrowed(|lofts| self.pushable(ends, (heading, course.sight), lofts)))
     }
 
     /// Which lofts of an interval the ground blocks for the trunk. The search ends where it blocks all.

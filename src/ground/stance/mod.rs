@@ -20,12 +20,13 @@ mod clip;
 mod flight;
 mod foothold;
 mod pose;
+mod push;
 mod stand;
 mod trunk;
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 
 pub use foothold::{Foothold, LimbOutcome};
 pub use pose::Pose;
@@ -112,6 +113,35 @@ impl StanceGround {
         let trunk = self.robot.trunk().iter().flat_map(|part| part.corners_m()).map(|corner| corner.z).fold(0.0, lowest);
         let limbs = self.robot.limbs().iter().map(|limb| limb.bounds()[0].z).fold(0.0, lowest);
         [(-trunk).min(-limbs), -limbs]
+    }
+
+    /// The highest ground straight under a point, m; `None` where there is none.
+    pub fn ground_below_m(&self, point: Point3<f64>) -> Option<f64> {
+        let near_m = self.mesh.tree().resolution_m();
+        let mut highest: Option<f64> = None;
+        self.mesh.tree().visit(
+            |min, max| {
+                min.x - near_m <= point.x
+                    && point.x <= max.x + near_m
+                    && min.y - near_m <= point.y
+                    && point.y <= max.y + near_m
+                    && min.z <= point.z
+            },
+            |_, [a, b, c]| {
+                let normal = (b - a).cross(&(c - a));
+                let side = |from: &Point3<f64>, to: &Point3<f64>| {
+                    let edge = (to - from).xy();
+                    edge.perp(&(point - from).xy()) * normal.z.signum() >= -near_m * edge.norm()
+                };
+                if normal.z != 0.0 && side(a, b) && side(b, c) && side(c, a) {
+                    let z_m = a.z - (point - a).xy().dot(&normal.xy()) / normal.z;
+                    if z_m <= point.z && highest.is_none_or(|known| z_m > known) {
+                        highest = Some(z_m);
+                    }
+                }
+            },
+        );
+        highest
     }
 
     /// Up for a trunk over a facet or several with this mean normal.

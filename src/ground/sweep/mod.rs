@@ -115,6 +115,7 @@ impl Sweep {
         let point = takeoff.point;
         let from = Departure { x_m: point.x_m, z_m: point.z_m, speed_squared: speed * speed, cone: rule.slopes() };
         let (in_plane, beyond_bend) = table.split_at_bend(takeoff, among, direction);
+        let (in_plane, beyond_layer) = table.split_at_layer(takeoff, in_plane, direction);
         let (on_segment, mut left) = table.split_at_segment(takeoff, in_plane, direction);
         outwards(on_segment, direction).try_for_each(|i| visit(i, test.lofts(takeoff, &stations[i])))?;
         overflight.begin(takeoff, direction);
@@ -137,6 +138,7 @@ impl Sweep {
                 visit(i, verdict)?;
             }
         }
+        outwards(beyond_layer, direction).try_for_each(|i| visit(i, Err(table.refused_beyond_layer(takeoff, i, direction))))?;
         outwards(beyond_bend, direction).try_for_each(|i| visit(i, Err(refusals[i].unwrap_or(Limit::Bend))))
     }
 }

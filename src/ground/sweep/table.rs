@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::{lanes::Departure, near::NearGround, terrain::Approach};
 use crate::{
     ballistics::LineOfSight,
-    chain::Station,
+    chain::{ChainLayers, Station},
     hop::{HopTest, ground_slope},
     world::{Contact, Direction, Limit, tolerant_speed_m_s},
 };
@@ -178,6 +178,36 @@ impl LandingTable {
                 (cut..ahead.end, ahead.start..cut)
             }
         }
+    }
+
+    /// Divides a range of stations ahead of a take-off into those that a flight reaches without meeting a layer that refuses it and
+    /// those beyond.
+    pub(super) fn split_at_layer(
+        &self,
+        takeoff: &Station,
+        ahead: Range<usize>,
+        direction: Direction,
+    ) -> (Range<usize>, Range<usize>) {
+        let geometry = self.test.chain().geometry();
+        let restricted = geometry.layers().is_some_and(ChainLayers::restrict_flights);
+        let meets = |x_m: f64| restricted && geometry.layer_refusing_flight(takeoff.point.x_m, x_m).is_some();
+        match direction {
+            Direction::Forward => {
+                let cut = if restricted { self.first_where(ahead.clone(), meets) } else { ahead.end };
+                (ahead.start..cut, cut..ahead.end)
+            }
+            Direction::Reverse => {
+                let cut = if restricted { self.first_where(ahead.clone(), |x_m| !meets(x_m)) } else { ahead.start };
+                (cut..ahead.end, ahead.start..cut)
+            }
+        }
+    }
+
+    /// The limit that refuses a landing beyond a layer that refuses the flight.
+    #[cold]
+    pub(super) fn refused_beyond_layer(&self, takeoff: &Station, landing: usize, direction: Direction) -> Limit {
+        let flight = || self.test.chain().geometry().layer_refusing_flight(takeoff.point.x_m, self.x_m[landing]).map(Limit::Layer);
+        self.rules(direction).refusal[landing].or_else(flight).unwrap_or(Limit::Direction)
     }
 
     /// Divides a range of stations ahead of a take-off into those that share a segment with it and those beyond.

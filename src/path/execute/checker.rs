@@ -38,7 +38,7 @@ const STEP_TOLERANCE: f64 = 1e-9;
 const STEP_ULPS: f64 = 8.0;
 
 /// Tolerance of a map position, as a fraction of the size of its coordinates.
-const MAP_TOLERANCE: f64 = 1e-12;
+pub(super) const MAP_TOLERANCE: f64 = 1e-12;
 
 /// Relative rounding of the horizontal speed of a hop: near the vertical, the last digit of the angle is a part of its cosine.
 pub(super) fn angle_rounding(hop: &Hop) -> f64 {
@@ -74,7 +74,7 @@ struct Meeting {
 }
 
 impl<S: Surface> Checker<'_, S> {
-    fn note(&mut self, limit: ViolatedLimit, measure: Option<Measure>, at_x_m: f64) {
+    pub(super) fn note(&mut self, limit: ViolatedLimit, measure: Option<Measure>, at_x_m: f64) {
         self.violations.push(Violation { measure, ..Violation::at(self.number, limit, at_x_m) });
     }
 
@@ -109,6 +109,7 @@ impl<S: Surface> Checker<'_, S> {
         self.takeoff(self.hop);
         self.landing(flight);
         self.bends();
+        self.layers();
         self.mechanical_angle();
         self.steps();
         self.speeds();
@@ -570,6 +571,7 @@ fn refusal_measure(refusal: GroundRefusal) -> Option<Measure> {
         GroundRefusal::TouchdownCone { .. }
         | GroundRefusal::NoGround
         | GroundRefusal::KeepOut
+        | GroundRefusal::Layer(_)
         | GroundRefusal::SpeedZero
         | GroundRefusal::NothingAhead { .. }
         | GroundRefusal::FacesDown { .. }

@@ -8,6 +8,7 @@
 mod checker;
 mod flight;
 mod footprint;
+mod layers;
 mod over_mesh;
 mod stores;
 mod touchdown;
@@ -17,6 +18,7 @@ use checker::Checker;
 use flight::Course;
 pub use flight::{Clearance, Flight};
 use footprint::FootprintFit;
+pub(super) use layers::holds_near;
 use stores::Stores;
 pub use violation::{Measure, StatedValue, ViolatedLimit, Violation};
 

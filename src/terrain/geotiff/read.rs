@@ -95,7 +95,7 @@ fn read_tiff(file: &TiffFile, context: &ReadContext) -> Result<Dem, TerrainError
 
 /// The interpretation of the samples and their position.
 fn check_tags(file: &TiffFile, images: &Images<'_>, context: &ReadContext) -> Result<(Decoder, Placement), TerrainError> {
-    let ReadContext { no_data: rule, sidecars } = context;
+    let ReadContext { no_data: rule, of_any_unit, sidecars } = context;
     let tags = GeoTags::of(images.elevations);
     let own = tags.transform.no_data.as_deref().map(read_no_data).transpose()?.flatten();
     let no_data = sidecars.no_data(*rule, own)?;
@@ -104,7 +104,9 @@ fn check_tags(file: &TiffFile, images: &Images<'_>, context: &ReadContext) -> Re
     let own = one_scaling(by_metadata, tags.vertical_scaling()?)?;
     let scaling = sidecars.scaling(own)?;
     let placement = tags.place(images.layout.height, sidecars.transform(), scaling)?;
-    check_unit(&unit, scaling)?;
+    if !of_any_unit {
+        check_unit(&unit, scaling)?;
+    }
     Ok((Decoder::new(file, images, no_data, scaling)?, placement))
 }
 

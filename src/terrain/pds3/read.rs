@@ -132,7 +132,7 @@ struct OpenPds3 {
 
 impl OpenPds3 {
     fn new(label: &Label, mut image: ImageObject, source: Source, context: &ReadContext) -> Result<Self, TerrainError> {
-        let ReadContext { no_data: rule, sidecars } = context;
+        let ReadContext { no_data: rule, sidecars, .. } = context;
         let no_data = sidecars.no_data(*rule, None)?;
         if *rule != NoDataRule::AsStated {
             image.marks.clear();

@@ -61,7 +61,7 @@ pub(super) fn cells_at(at: MapPoint, raster: &Dem) -> impl Iterator<Item = Optio
 const NEAR_A_BORDER: f64 = 1e-9;
 
 /// A non-negative integer as an index.
-fn as_index(whole: f64) -> Option<usize> {
+pub(super) fn as_index(whole: f64) -> Option<usize> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; the cast saturates")]
     (whole >= 0.0).then_some(whole as usize)
 }

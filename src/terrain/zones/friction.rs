@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     quantity::MapPoint,
-    terrain::{CoordinateSystem, Dem, MapBounds, Profile, TerrainError, read_dem},
+    terrain::{CoordinateSystem, Dem, DemOptions, MapBounds, Profile, TerrainError},
     world::FrictionCone,
 };
 
@@ -36,7 +36,7 @@ pub struct FrictionRaster {
 /// negative number.
 pub fn read_friction_raster(path: &Path, coordinates: Option<&CoordinateSystem>) -> Result<FrictionRaster, TerrainError> {
     let failed = |problem: String| TerrainError::Overlay { what: WHAT, path: path.to_path_buf(), problem };
-    let raster = read_dem(path).map_err(|error| failed(of_raster(error)))?;
+    let raster = DemOptions::default().of_any_unit().read(path).map_err(|error| failed(of_raster(error)))?;
     let same = same_map::of_raster(&raster.georeference().coordinate_system, coordinates).map_err(|difference| {
         failed(format!("the raster lies on another map ({difference}); {}", same_map::mend_raster(coordinates)))
     })?;

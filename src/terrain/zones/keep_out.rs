@@ -1,4 +1,4 @@
-//! Keep-out zones: polygons or a mask where take-off and landing are forbidden.
+//! Keep-out zones: polygons or a mask where take-off and landing are forbidden; and keep-in zones, outside which they are.
 
 use std::{
     fs,
@@ -18,16 +18,54 @@ use crate::{
     terrain::{CoordinateSystem, Dem, DemOptions, MapBounds, NoDataRule, Profile, TerrainError, without_mark},
 };
 
-/// The name of the file's role in messages.
-const WHAT: &str = "keep-out zones";
+/// On which side of zones take-off and landing are forbidden.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Forbidden {
+    Inside,
+    Outside,
+}
+
+impl Forbidden {
+    /// The name of the file's role in messages.
+    const fn what(self) -> &'static str {
+        match self {
+            Self::Inside => "keep-out zones",
+            Self::Outside => "keep-in zones",
+        }
+    }
+
+    /// What a mask holds where nothing is known: that nothing is allowed there.
+    const fn unknown(self) -> f64 {
+        match self {
+            Self::Inside => 1.0,
+            Self::Outside => 0.0,
+        }
+    }
+
+    /// Whether contacts are forbidden where all pixels of a mask are zones, or only some.
+    fn forbids(self, mut is_zone: impl Iterator<Item = bool>) -> bool {
+        match self {
+            Self::Inside => is_zone.any(|zone| zone),
+            Self::Outside => {
+                let mut some = false;
+                let all = is_zone.all(|zone| {
+                    some = true;
+                    zone
+                });
+                !(some && all)
+            }
+        }
+    }
+}
 
 /// The largest GeoJSON read: zones drawn by hand take kilobytes, vectorised rasters megabytes.
 const LARGEST_BYTES: u64 = 1 << 30;
 
-/// The zones where take-off and landing are forbidden. Flying over is allowed.
+/// The ground where take-off and landing are forbidden: inside zones, or outside them. Flying over is allowed.
 #[derive(Clone, Debug)]
 pub struct KeepOut {
     path: PathBuf,
+    forbidden: Forbidden,
     zones: Zones,
     /// Why its map could not be compared with the terrain's.
     not_compared: Option<String>,
@@ -51,7 +89,27 @@ enum Zones {
 /// [`TerrainError::Overlay`]: the file cannot be read, holds no polygons, holds an invalid one (named by feature and ring),
 /// has coordinates in degrees or on another map, or lies wholly off the terrain.
 pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds: MapBounds) -> Result<KeepOut, TerrainError> {
-    let failed = |problem: String| TerrainError::Overlay { what: WHAT, path: path.to_path_buf(), problem };
+    read(Forbidden::Inside, path, coordinates, bounds)
+}
+
+/// Reads keep-in zones for a terrain, of the same formats: what lies outside all of them is kept out.
+///
+/// The border of a polygon belongs to it. A pixel of a mask beside one that is zero, or missing, ends at its border, which is kept out, as
+/// is everything beyond the mask.
+///
+/// # Errors
+/// As [`read_keep_out`].
+pub fn read_keep_in(path: &Path, coordinates: Option<&CoordinateSystem>, bounds: MapBounds) -> Result<KeepOut, TerrainError> {
+    read(Forbidden::Outside, path, coordinates, bounds)
+}
+
+fn read(
+    forbidden: Forbidden,
+    path: &Path,
+    coordinates: Option<&CoordinateSystem>,
+    bounds: MapBounds,
+) -> Result<KeepOut, TerrainError> {
+    let failed = |problem: String| TerrainError::Overlay { what: forbidden.what(), path: path.to_path_buf(), problem };
     let (zones, same) = if looks_like_json(path).map_err(|error| failed(unread(&error)))? {
         let size = fs::metadata(path).map_err(|error| failed(unread(&error)))?.len();
         if size > LARGEST_BYTES {
@@ -63,7 +121,7 @@ pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds
     } else if let Some(format) = vector_format(path).map_err(|error| failed(unread(&error)))? {
         return Err(failed(refusal(format, path, coordinates)));
     } else {
-        let mask = mask_of(path).map_err(|error| failed(of_raster(error)))?;
+        let mask = mask_of(path, forbidden).map_err(|error| failed(of_raster(error)))?;
         let same = same_map::of_raster(&mask.georeference().coordinate_system, coordinates).map_err(|difference| {
             failed(format!("the mask lies on another map ({difference}); {}", same_map::mend_raster(coordinates)))
         })?;
@@ -71,26 +129,27 @@ pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds
     };
     let not_compared = match same {
         SameMap::Agreed => None,
-        SameMap::NotCompared(reason) => Some(format!("{WHAT} '{}': {reason}", name_of(path))),
+        SameMap::NotCompared(reason) => Some(format!("{} '{}': {reason}", forbidden.what(), name_of(path))),
     };
-    Ok(KeepOut { path: path.to_path_buf(), zones, not_compared })
+    Ok(KeepOut { path: path.to_path_buf(), forbidden, zones, not_compared })
 }
 
 /// A mask whose zones are all its pixels but zeros: what is missing may not be landed on either. A no-data value of 0, as burning
-/// polygons into an empty raster leaves, means free ground.
-fn mask_of(path: &Path) -> Result<Dem, TerrainError> {
+/// polygons into an empty raster leaves, is no zone.
+fn mask_of(path: &Path, forbidden: Forbidden) -> Result<Dem, TerrainError> {
     let raster = DemOptions::default().no_data(NoDataRule::Nothing).read(path)?;
-    let kept = raster.elevations().map(|value| value.unwrap_or(1.0)).collect();
+    let kept = raster.elevations().map(|value| value.unwrap_or(forbidden.unknown())).collect();
     Dem::new(raster.rows(), raster.cols(), kept, raster.georeference().clone())
 }
 
 impl KeepOut {
     /// Its content, whatever file it comes from.
-    pub(crate) const fn content(&self) -> &dyn std::fmt::Debug {
-        &self.zones
+    pub(crate) fn content(&self) -> impl std::fmt::Debug + '_ {
+        (self.forbidden, &self.zones)
     }
 
-    /// Whether a position lies in a zone, including its border; beyond its pixels a mask has no zones.
+    /// Whether contacts at a position are forbidden: in a keep-out zone, including its border, or outside all keep-in zones. Beyond its
+    /// pixels a mask has no zones.
     ///
     /// # Examples
     /// ```
@@ -106,18 +165,20 @@ impl KeepOut {
     /// ```
     pub fn keeps_out(&self, place: MapPoint) -> bool {
         match &self.zones {
-            Zones::Polygons(polygons) => polygons.iter().any(|polygon| polygon.contains(place)),
-            Zones::Mask(mask) => cells_at(place, mask).flatten().any(|value| value != 0.0),
+            Zones::Polygons(polygons) => {
+                self.forbidden.forbids(std::iter::once(polygons.iter().any(|polygon| polygon.contains(place))))
+            }
+            Zones::Mask(mask) => self.forbidden.forbids(cells_at(place, mask).map(is_zone)),
         }
     }
 
-    /// Marks the segments of a profile that lie in a zone, and adds vertices where its line crosses the border of a zone.
+    /// Marks the segments of a profile where contacts are forbidden, and adds vertices where its line crosses the border of a zone.
     ///
     /// Zones are closed: a segment along a border, including the border of a hole, lies inside. Each segment is then wholly
     /// inside or outside; at a vertex on a border, the adjacent segments rule as at every vertex. A zone that overlaps the
     /// line by less than 1e-12 of the map coordinates (0.1 micrometres at 100 km) touches it at a point, which has no effect.
     ///
-    /// Returns whether any part of the profile lies in a zone.
+    /// Returns whether contacts are forbidden on any part of the profile.
     ///
     /// # Errors
     /// [`TerrainError::Overlay`] if a mask does not cover the whole profile.
@@ -138,11 +199,14 @@ impl KeepOut {
     /// ```
     pub fn mark(&self, profile: &mut Profile) -> Result<bool, TerrainError> {
         let Some(line) = Line::of(profile) else { return Ok(false) };
-        let parts = match &self.zones {
-            Zones::Polygons(polygons) => polygons.iter().flat_map(|polygon| polygon.parts_on(&line)).collect(),
-            Zones::Mask(mask) => self.masked(mask, &line)?,
+        let stretches: Vec<Stretch<bool>> = match &self.zones {
+            Zones::Polygons(polygons) => {
+                let inside = covered(&line, polygons.iter().flat_map(|polygon| polygon.parts_on(&line)).collect());
+                let forbids = |part: Stretch<bool>| Stretch { value: self.forbidden.forbids(std::iter::once(part.value)), ..part };
+                inside.into_iter().map(forbids).collect()
+            }
+            Zones::Mask(mask) => covered(&line, self.masked(mask, &line)?),
         };
-        let stretches: Vec<Stretch<bool>> = covered(&line, parts);
         line.lay(profile, &stretches, |profile, segment, inside| profile.facets[segment].keep_out |= inside);
         Ok(stretches.iter().any(|stretch| stretch.value))
     }
@@ -154,7 +218,16 @@ impl KeepOut {
 
     /// The warning if no zone meets `on`, such as "the transect".
     pub(crate) fn without_effect(&self, on: &str) -> String {
-        format!("{WHAT} '{}': no zone meets {on}, so none has an effect there", name_of(&self.path))
+        let effect = match self.forbidden {
+            Forbidden::Inside => "none has an effect there",
+            Forbidden::Outside => "no contact is allowed there",
+        };
+        format!("{} '{}': no zone meets {on}, so {effect}", self.forbidden.what(), name_of(&self.path))
+    }
+
+    /// The warning if it forbids no contact on `on`, of keep-in zones.
+    pub(crate) fn without_bounds(&self, on: &str) -> String {
+        format!("{} '{}': they contain all of {on}, so they have no effect there", self.forbidden.what(), name_of(&self.path))
     }
 
     /// Whether a zone, or the rectangle around its polygon, intersects a rectangle of the map.
@@ -174,10 +247,11 @@ impl KeepOut {
         }
     }
 
-    /// The parts of a line on non-zero pixels.
+    /// The parts of a line on pixels where contacts are forbidden.
     fn masked(&self, mask: &Dem, line: &Line) -> Result<Vec<(f64, f64)>, TerrainError> {
         let cells = cells_on(line, mask);
-        if let Some(beyond) = cells.iter().find(|cell| cell.value.is_empty()) {
+        let beyond = cells.iter().find(|cell| cell.value.is_empty());
+        if let Some(beyond) = beyond.filter(|_| self.forbidden == Forbidden::Inside) {
             let at = line.map_point(0.5 * (beyond.from_m + beyond.to_m));
             let whole = if is_on(&cells) { "ends before the slice does" } else { "does not cover the slice" };
             let problem = format!(
@@ -187,11 +261,16 @@ impl KeepOut {
                 at.y,
                 cell_bounds(mask)
             );
-            return Err(TerrainError::Overlay { what: WHAT, path: self.path.clone(), problem });
+            return Err(TerrainError::Overlay { what: self.forbidden.what(), path: self.path.clone(), problem });
         }
-        let kept = |values: &[Option<f64>]| values.iter().flatten().any(|value| *value != 0.0);
+        let kept = |values: &[Option<f64>]| self.forbidden.forbids(values.iter().copied().map(is_zone));
         Ok(cells.iter().filter(|cell| kept(&cell.value)).map(|cell| (cell.from_m, cell.to_m)).collect())
     }
+}
+
+/// Whether a pixel of a mask, in which nothing is missing, is a zone.
+fn is_zone(pixel: Option<f64>) -> bool {
+    pixel.is_some_and(|value| value != 0.0)
 }
 
 /// The first bytes of a file.

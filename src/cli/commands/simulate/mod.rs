@@ -1,6 +1,7 @@
 //! `chta simulate`: how reliably the planned path is flown.
 
 mod experiment;
+mod legs;
 mod over_mesh;
 mod travel;
 

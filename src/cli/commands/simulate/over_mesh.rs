@@ -24,6 +24,9 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
         ("--plot-map", args.plot_map.is_some(), "draws landings on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
     ])?;
+    if input.scenario.legs.file.is_some() {
+        return super::legs::run(args, input);
+    }
     let of_result = MeshResult::of(args, input)?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let tally = args.tally.as_deref().map(Pending::begin).transpose()?;

@@ -1,0 +1,37 @@
+//! `chta simulate` of a robot with legs.
+
+use chta::{
+    report::{DocumentKind, legs_simulate_text},
+    study::{LegsRouteQuestion, legs_route, simulate_legs},
+};
+
+use crate::cli::{
+    Answer, Failure,
+    args::SimulateArgs,
+    load::MeshPlanInput,
+    not_on_mesh, output,
+    progress::Progress,
+    views::{Files, show},
+};
+
+/// Simulates a route of a robot with legs.
+pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
+    not_on_mesh::refuse_for_legs(&[("--tally", args.tally.is_some(), "writes the landings of a point")])?;
+    let plot = output::begin_picture("--plot", args.plot.as_deref())?;
+    let progress = Progress::new(args.common.quiet);
+    let question = LegsRouteQuestion { scenario: &input.scenario, base: &input.base };
+    let routed = legs_route(question, &progress).map_err(|error| Failure::about(&input.mesh, &error))?;
+    let simulated =
+        simulate_legs(routed, &input.scenario, &args.options(), &progress).map_err(|error| Failure::about(&input.mesh, &error))?;
+    output::warn_all(args.common.quiet, &simulated.warnings);
+    let mut files = Files::default();
+    files.picture(plot, || Some(simulated.routed.picture(&input.scenario, chta::figure::SeenFrom::default())))?;
+    files.finish()?;
+    let answer = &simulated.answer;
+    show(
+        args.answer.format,
+        || legs_simulate_text(answer),
+        || input.document(DocumentKind::SimulateLegs, &simulated.warnings, answer),
+    )?;
+    Ok(Answer::of(answer.plan.plan.is_traversable() && answer.shows_success()))
+}

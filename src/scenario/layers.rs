@@ -1,0 +1,181 @@
+//! `[layer.NAME]`: rasters with a condition on contacts or flights.
+
+use std::path::PathBuf;
+
+use serde_json::{Map, Value};
+
+use super::{Entries, ProblemKind, TerrainSource, values::number};
+use crate::{
+    terrain::{LayerCondition, LayerRule},
+    world::LayerName,
+};
+
+/// A layer of a scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayerKeys {
+    /// What it asks for.
+    pub rule: LayerRule,
+    /// Path of its raster, relative to the scenario's folder.
+    pub raster: PathBuf,
+}
+
+/// The keys of a layer with their meanings.
+pub(super) const LAYER_KEYS: [(&str, &str); 5] = [
+    ("raster", "raster on the terrain's map, path from this file"),
+    ("min", "the layer holds where the raster's value is at least this"),
+    ("max", "the layer holds where the raster's value is at most this"),
+    ("equals", "the layer holds where the raster's value is this, as 255 where gdal_viewshed sees"),
+    (
+        "applies_to",
+        "contact: take-offs, landings and driven ground; flight: all ground flown over; or a list of both; absent: contact",
+    ),
+];
+
+/// The words of `applies_to`.
+pub(super) const APPLIES_TO: [&str; 2] = ["contact", "flight"];
+
+/// The layers, in the order of their names.
+pub(super) fn layers(entries: &mut Entries, terrain: Option<&TerrainSource>) -> Vec<LayerKeys> {
+    let mut found = Vec::new();
+    for name in entries.names_in("layer") {
+        let misplaced = match terrain {
+            Some(TerrainSource::Chain { .. }) => Some("a chain"),
+            Some(TerrainSource::MeshInSpace { .. }) => Some("a mesh with a free route"),
+            _ => None,
+        };
+        if let Some(what) = misplaced {
+            let message = format!("layer.{name} is laid over a map, but terrain has {what}");
+            entries.problem(("layer", &name), ProblemKind::Misplaced, message, "remove it, or give a dem");
+        }
+        match entries.value("layer", &name).and_then(toml::Value::as_table).map(|table| layer(&name, table)) {
+            Some(Ok(layer)) => found.push(layer),
+            Some(Err((message, help))) => entries.problem(("layer", &name), ProblemKind::Value, message, help),
+            None => {}
+        }
+    }
+    found
+}
+
+/// One layer, or what is wrong with it and how to mend it.
+fn layer(name: &str, table: &toml::Table) -> Result<LayerKeys, (String, String)> {
+    let known = LayerName::new(name).ok_or_else(|| {
+        let message =
+            format!("layer.{name} has a name that a limit cannot have, expected 1 to 64 of the letters a to z, digits, _ and -");
+        (message, "rename the layer, such as [layer.sun]".to_owned())
+    })?;
+    if let Some(unknown) = table.keys().find(|key| LAYER_KEYS.iter().all(|(known, _)| known != key)) {
+        let keys = LAYER_KEYS.map(|(key, _)| key).join(", ");
+        return Err((format!("unknown key layer.{name}.{unknown}"), format!("the keys of a layer are {keys}")));
+    }
+    let meaning = |key: &str| {
+        let of_key = LAYER_KEYS.iter().find(|(known, _)| *known == key);
+        format!("it means: {}", of_key.map_or("", |(_, meaning)| meaning))
+    };
+    let raster = match table.get("raster") {
+        Some(toml::Value::String(path)) if !path.trim().is_empty() => PathBuf::from(path),
+        Some(other) => return Err((format!("layer.{name}.raster is {other}, expected a path in quotes"), meaning("raster"))),
+        None => return Err((format!("layer.{name} has no raster"), meaning("raster"))),
+    };
+    let bound = |key: &str| match table.get(key) {
+        None => Ok(None),
+        Some(value) => match number(value).filter(|number| number.is_finite()) {
+            Some(number) => Ok(Some(number)),
+            None => Err((format!("layer.{name}.{key} is {value}, expected a finite number"), meaning(key))),
+        },
+    };
+    let condition = LayerCondition { min: bound("min")?, max: bound("max")?, equals: bound("equals")? };
+    match condition {
+        LayerCondition { min: None, max: None, equals: None } => {
+            let help = "say which values hold, such as min = 0.3".to_owned();
+            return Err((format!("layer.{name} has no condition, expected min, max or equals"), help));
+        }
+        LayerCondition { min, max, equals: Some(_) } if min.is_some() || max.is_some() => {
+            let message = format!("layer.{name} has equals beside min or max, expected one of the two");
+            return Err((message, "remove one of them".to_owned()));
+        }
+        LayerCondition { min: Some(min), max: Some(max), .. } if min > max => {
+            let message = format!("layer.{name} has a min of {min} above its max of {max}, so that it holds nowhere");
+            return Err((message, "exchange them, or remove one".to_owned()));
+        }
+        _ => {}
+    }
+    let [on_contact, on_flight] = match table.get("applies_to") {
+        None => [true, false],
+        Some(value) => {
+            let words =
+                value.as_array().map_or_else(|| vec![value.as_str()], |words| words.iter().map(toml::Value::as_str).collect());
+            let are_known = !words.is_empty() && words.iter().all(|word| word.is_some_and(|word| APPLIES_TO.contains(&word)));
+            if !are_known {
+                let message = format!("layer.{name}.applies_to is {value}, expected \"contact\", \"flight\" or a list of both");
+                return Err((message, meaning("applies_to")));
+            }
+            APPLIES_TO.map(|word| words.contains(&Some(word)))
+        }
+    };
+    Ok(LayerKeys { rule: LayerRule { name: known, condition, on_contact, on_flight }, raster })
+}
+
+/// The layers as a document that reads back.
+pub(super) fn document(layers: &[LayerKeys], named: &dyn Fn(&std::path::Path) -> String) -> Value {
+    let of = |layer: &LayerKeys| {
+        let LayerRule { name, condition, on_contact, on_flight } = layer.rule;
+        let numbers = [("min", condition.min), ("max", condition.max), ("equals", condition.equals)];
+        let applies_to = match (on_contact, on_flight) {
+            (true, true) => Value::from(APPLIES_TO.to_vec()),
+            (true, false) => APPLIES_TO[0].into(),
+            (false, _) => APPLIES_TO[1].into(),
+        };
+        let keys = [("raster", Some(Value::from(named(&layer.raster)))), ("applies_to", Some(applies_to))];
+        let stated = numbers.into_iter().map(|(key, number)| (key, number.map(Value::from))).chain(keys);
+        let stated: Map<_, _> = stated.filter_map(|(key, value)| Some((key.to_owned(), value?))).collect();
+        (name.name().to_owned(), Value::Object(stated))
+    };
+    Value::Object(layers.iter().map(of).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scenario::{Entries, Scenario, scenario_document};
+
+    const HEAD: &str = "[body]\nname = \"moon\"\n[terrain]\ndem = \"x.tif\"\nstart_m = [0, 0]\ngoal_m = [1, 1]\n";
+
+    #[test]
+    fn wrong_layers_are_refused_with_their_names() {
+        for (layer, words) in [
+            ("[layer.sun]\nmin = 1", ["layer.sun has no raster", "path from this file"]),
+            ("[layer.sun]\nraster = \"a.tif\"", ["no condition", "min = 0.3"]),
+            ("[layer.sun]\nraster = \"a.tif\"\nmim = 1", ["unknown key layer.sun.mim", "raster, min, max, equals"]),
+            ("[layer.sun]\nraster = \"a.tif\"\nmin = \"high\"", ["layer.sun.min is \"high\"", "at least this"]),
+            ("[layer.sun]\nraster = \"a.tif\"\nmin = 2\nmax = 1", ["min of 2 above its max of 1", "exchange"]),
+            ("[layer.sun]\nraster = \"a.tif\"\nmin = 2\nequals = 1", ["equals beside min", "remove one"]),
+            ("[layer.sun]\nraster = \"a.tif\"\nmin = 2\napplies_to = \"hop\"", ["applies_to is \"hop\"", "contact"]),
+            ("[layer.sun]\nraster = \"a.tif\"\nmin = 2\napplies_to = []", ["applies_to is []", "contact"]),
+            ("[layer.\"s n\"]\nraster = \"a.tif\"\nmin = 2", ["a limit cannot have", "rename"]),
+            ("[layer]\nsun = 3", ["layer.NAME is 3", "raster"]),
+        ] {
+            let problems = Scenario::new(Entries::from_toml(&format!("{HEAD}{layer}\n"))).unwrap_err();
+            let text = format!("{} {}", problems[0].message, problems[0].help);
+            assert!(words.iter().all(|word| text.contains(word)), "{layer}: {text}");
+        }
+        let on_chain = "[body]\nname = \"moon\"\n[terrain]\nchain = \"x.csv\"\n[layer.sun]\nraster = \"a.tif\"\nmin = 1\n";
+        let problems = Scenario::new(Entries::from_toml(on_chain)).unwrap_err();
+        assert!(problems[0].message.contains("layer.sun is laid over a map"), "{problems:?}");
+    }
+
+    #[test]
+    fn layers_read_back_and_their_keys_are_set_one_by_one() {
+        let text = "[layer.sun]\nraster = \"a.tif\"\nmin = 0.25\n[layer.link]\nraster = \"b.tif\"\nequals = 255\napplies_to = [\"flight\", \"contact\"]\n";
+        let mut entries = Entries::from_toml(&format!("{HEAD}{text}"));
+        entries.set("--set", "layer.sun.max=0.75");
+        entries.set("--set", "layer.sun.applies_to=flight");
+        entries.set("--set", "layer.hazard={ raster = \"c.tif\", max = 1 }");
+        let scenario = Scenario::new(entries).unwrap();
+        let names: Vec<&str> = scenario.layers.iter().map(|layer| layer.rule.name.name()).collect();
+        assert_eq!(names, ["hazard", "link", "sun"]);
+        let sun = scenario.layers[2].rule;
+        assert_eq!((sun.condition.min, sun.condition.max, sun.on_contact, sun.on_flight), (Some(0.25), Some(0.75), false, true));
+        assert!(scenario.layers[1].rule.on_contact && scenario.layers[1].rule.on_flight);
+        let document = scenario_document(&scenario, &|path| path.to_string_lossy().into_owned());
+        assert_eq!(Scenario::from_document(&document).as_ref(), Ok(&scenario));
+    }
+}

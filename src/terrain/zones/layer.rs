@@ -1,0 +1,325 @@
+//! Layers: rasters with a condition that has to hold at contacts or under flights.
+
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+};
+
+use super::{
+    cells::{as_index, cell_bounds},
+    keep_out::{name_of, of_raster},
+    same_map::{self, SameMap},
+};
+use crate::{
+    quantity::MapPoint,
+    terrain::{CoordinateSystem, Dem, DemOptions, MapBounds, TerrainError},
+    world::LayerName,
+};
+
+/// The name of the file's role in messages.
+const WHAT: &str = "layer";
+
+/// A position within this fraction of a cell of a border lies on it, and so in the cells on both sides.
+const ON_A_BORDER: f64 = 1e-9;
+
+/// What the value of a cell has to be; what is absent does not count.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LayerCondition {
+    /// At least this.
+    pub min: Option<f64>,
+    /// At most this.
+    pub max: Option<f64>,
+    /// Exactly this.
+    pub equals: Option<f64>,
+}
+
+impl LayerCondition {
+    /// Whether a value meets the condition.
+    pub fn holds(&self, value: f64) -> bool {
+        self.min.is_none_or(|min| value >= min)
+            && self.max.is_none_or(|max| value <= max)
+            && self.equals.is_none_or(|equals| value == equals)
+    }
+}
+
+impl fmt::Display for LayerCondition {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.min, self.max, self.equals) {
+            (_, _, Some(equals)) => write!(formatter, "= {equals}"),
+            (Some(min), Some(max), None) => write!(formatter, "{min} to {max}"),
+            (Some(min), None, None) => write!(formatter, "≥ {min}"),
+            (None, Some(max), None) => write!(formatter, "≤ {max}"),
+            (None, None, None) => formatter.write_str("known"),
+        }
+    }
+}
+
+/// What a layer asks for, and of what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LayerRule {
+    /// Its name.
+    pub name: LayerName,
+    /// What holds in a cell.
+    pub condition: LayerCondition,
+    /// Whether it has to hold where the robot touches the ground: at every take-off and landing, and along every driven leg.
+    pub on_contact: bool,
+    /// Whether it has to hold under every point of a flight.
+    pub on_flight: bool,
+}
+
+/// A raster on the terrain's map whose condition restricts contacts or flights.
+///
+/// A value applies to its cell, half a spacing in every direction from the cell's centre. On a border all cells that meet there have to
+/// hold. A cell without data does not hold, nor does a place beyond the raster.
+#[derive(Clone, Debug)]
+pub struct Layer {
+    rule: LayerRule,
+    path: PathBuf,
+    raster: Dem,
+    /// For each row of cells, how many of those before each column do not hold: one more number than columns.
+    refused_before: Vec<u32>,
+    /// Why its map could not be compared with the terrain's.
+    not_compared: Option<String>,
+}
+
+/// Reads the raster of a layer (`GeoTIFF`, ESRI ASCII grid) on the terrain's map; `coordinates` is the terrain's own description of its
+/// map, if it has one.
+///
+/// # Errors
+/// [`TerrainError::Overlay`]: the file cannot be read, is not a raster on a map in metres, or has another map.
+///
+/// # Examples
+/// ```
+/// use chta::{quantity::MapPoint, terrain::{LayerCondition, LayerRule, read_layer}, world::LayerName};
+/// let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("sun.asc");
+/// std::fs::write(&file, "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n0.9 0.8 0.1\n0.9 0.7 0.6\n")?;
+/// let condition = LayerCondition { min: Some(0.3), ..LayerCondition::default() };
+/// let rule = LayerRule { name: LayerName::new("sun").unwrap(), condition, on_contact: true, on_flight: true };
+/// let sun = read_layer(&file, rule, None)?;
+/// // The shaded cell is x from 20 to 30, y from 10 to 20; its border belongs to it.
+/// let holds = [(19.9, 15.0), (20.0, 15.0), (25.0, 15.0), (25.0, 9.9), (31.0, 5.0)].map(|(x, y)| sun.holds_at(MapPoint::new(x, y)));
+/// assert_eq!(holds, [true, false, false, true, false]);
+/// assert!(!sun.holds_between(MapPoint::new(15.0, 15.0), MapPoint::new(25.0, 5.0)), "it touches the corner of the shaded cell");
+/// assert!(sun.holds_between(MapPoint::new(14.0, 15.0), MapPoint::new(24.0, 5.0)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read_layer(path: &Path, rule: LayerRule, coordinates: Option<&CoordinateSystem>) -> Result<Layer, TerrainError> {
+    let failed = |problem: String| TerrainError::Overlay { what: WHAT, path: path.to_path_buf(), problem };
+    let raster = DemOptions::default().of_any_unit().read(path).map_err(|error| failed(of_raster(error)))?;
+    let same = same_map::of_raster(&raster.georeference().coordinate_system, coordinates).map_err(|difference| {
+        failed(format!("the raster lies on another map ({difference}); {}", same_map::mend_raster(coordinates)))
+    })?;
+    let not_compared = match same {
+        SameMap::Agreed => None,
+        SameMap::NotCompared(reason) => Some(format!("{WHAT} {} '{}': {reason}", rule.name, name_of(path))),
+    };
+    let refused_before = refused_before(&raster, &rule.condition);
+    Ok(Layer { rule, path: path.to_path_buf(), raster, refused_before, not_compared })
+}
+
+/// For each row of cells, how many of those before each column do not hold.
+fn refused_before(raster: &Dem, condition: &LayerCondition) -> Vec<u32> {
+    let mut before = Vec::with_capacity(raster.rows() * (raster.cols() + 1));
+    for row in 0..raster.rows() {
+        let mut count = 0;
+        before.push(count);
+        for col in 0..raster.cols() {
+            count += u32::from(!raster.elevation(row, col).is_some_and(|value| condition.holds(value)));
+            before.push(count);
+        }
+    }
+    before
+}
+
+/// A straight line over the cells of a raster, in columns and rows: cell (row, col) spans `col..col + 1` and `row..row + 1`.
+#[derive(Clone, Copy)]
+struct Track {
+    from: [f64; 2],
+    by: [f64; 2],
+}
+
+impl Track {
+    /// The shares of the way at which a coordinate lies between two values; empty if it never does.
+    fn shares(&self, axis: usize, low: f64, high: f64) -> (f64, f64) {
+        let (from, by) = (self.from[axis], self.by[axis]);
+        if by == 0.0 {
+            return if low <= from && from <= high { (0.0, 1.0) } else { (1.0, 0.0) };
+        }
+        let (a, b) = ((low - from) / by, (high - from) / by);
+        (a.min(b).max(0.0), a.max(b).min(1.0))
+    }
+
+    /// The least and the greatest value of a coordinate between two shares of the way.
+    fn span(&self, axis: usize, (begin, end): (f64, f64)) -> [f64; 2] {
+        let [a, b] = [begin, end].map(|share| self.from[axis] + share * self.by[axis]);
+        [a.min(b), a.max(b)]
+    }
+}
+
+impl Layer {
+    /// What it asks for.
+    pub const fn rule(&self) -> &LayerRule {
+        &self.rule
+    }
+
+    /// The raster.
+    pub const fn raster(&self) -> &Dem {
+        &self.raster
+    }
+
+    /// Whether the condition holds at a position.
+    pub fn holds_at(&self, place: MapPoint) -> bool {
+        self.holds_between(place, place)
+    }
+
+    /// Whether the condition holds at every point of a straight line on the map.
+    pub fn holds_between(&self, from: MapPoint, to: MapPoint) -> bool {
+        let track = self.track(from, to);
+        let (whole, counts) = ((0.0, 1.0), [self.raster.cols(), self.raster.rows()]);
+        let Some(rows) = cells_in(track.span(1, whole), counts[1]) else { return false };
+        if cells_in(track.span(0, whole), counts[0]).is_none() {
+            return false;
+        }
+        rows.into_iter().all(|row| {
+            let within = track.shares(1, as_f64(row) - ON_A_BORDER, as_f64(row + 1) + ON_A_BORDER);
+            within.0 > within.1 || cells_in(track.span(0, within), counts[0]).is_some_and(|cols| self.refused_in(row, &cols) == 0)
+        })
+    }
+
+    /// The parts of a straight line on the map where the condition does not hold, as shares of the way, in any order.
+    pub(crate) fn refused_shares(&self, from: MapPoint, to: MapPoint) -> Vec<(f64, f64)> {
+        let track = self.track(from, to);
+        let [cols, rows] = [self.raster.cols(), self.raster.rows()];
+        let [across, down] =
+            [(0, cols), (1, rows)].map(|(axis, count)| track.shares(axis, -ON_A_BORDER, as_f64(count) + ON_A_BORDER));
+        let on = (across.0.max(down.0), across.1.min(down.1));
+        if on.0 > on.1 {
+            return vec![(0.0, 1.0)];
+        }
+        let mut refused = Vec::new();
+        // Beyond the raster.
+        refused.extend((on.0 > 0.0).then_some((0.0, on.0)));
+        refused.extend((on.1 < 1.0).then_some((on.1, 1.0)));
+        for row in cells_in(track.span(1, on), rows).into_iter().flatten() {
+            let band = track.shares(1, as_f64(row) - ON_A_BORDER, as_f64(row + 1) + ON_A_BORDER);
+            let band = (band.0.max(on.0), band.1.min(on.1));
+            if band.0 > band.1 {
+                continue;
+            }
+            for col in cells_in(track.span(0, band), cols).into_iter().flatten() {
+                if self.refused_in(row, &(col..=col)) == 0 {
+                    continue;
+                }
+                let cell = track.shares(0, as_f64(col) - ON_A_BORDER, as_f64(col + 1) + ON_A_BORDER);
+                let cell = (cell.0.max(band.0), cell.1.min(band.1));
+                refused.extend((cell.0 <= cell.1).then_some(cell));
+            }
+        }
+        refused
+    }
+
+    /// The warning if its map could not be compared with the terrain's.
+    pub(crate) fn not_compared(&self) -> Option<&str> {
+        self.not_compared.as_deref()
+    }
+
+    /// The warning if it refuses nothing in a rectangle of the map, or everything, `on` a terrain such as "the DEM".
+    pub(crate) fn without_choice(&self, bounds: MapBounds, on: &str) -> Option<String> {
+        let named = || format!("{WHAT} {} '{}'", self.rule.name, name_of(&self.path));
+        let track = self.track(bounds.min, bounds.max);
+        let (rows, cols) = (self.raster.rows(), self.raster.cols());
+        let (Some(down), Some(across)) = (cells_in(track.span(1, (0.0, 1.0)), rows), cells_in(track.span(0, (0.0, 1.0)), cols))
+        else {
+            return cell_bounds(&self.raster)
+                .meets(bounds)
+                .then(|| format!("{} covers only a part of {on}: beyond it nothing is known, so that it refuses there", named()))
+                .or_else(|| Some(format!("{} does not lie on {on}, so that it refuses everything there", named())));
+        };
+        let (cells, refused) = down.fold((0, 0), |(cells, refused), row| {
+            (cells + across.end() + 1 - across.start(), refused + self.refused_in(row, &across) as usize)
+        });
+        match refused {
+            0 => Some(format!("{} holds all over {on}, so that it has no effect there", named())),
+            refused if refused == cells => Some(format!("{} holds nowhere on {on}, so that it refuses everything there", named())),
+            _ => None,
+        }
+    }
+
+    fn track(&self, from: MapPoint, to: MapPoint) -> Track {
+        let map = self.raster.georeference();
+        let place = |at: MapPoint| [(at.x - map.north_west().x) / map.dx_m() + 0.5, (map.north_west().y - at.y) / map.dy_m() + 0.5];
+        let (from, to) = (place(from), place(to));
+        Track { from, by: [to[0] - from[0], to[1] - from[1]] }
+    }
+
+    /// How many cells of a row do not hold.
+    fn refused_in(&self, row: usize, cols: &std::ops::RangeInclusive<usize>) -> u32 {
+        let begin = row * (self.raster.cols() + 1);
+        self.refused_before[begin + cols.end() + 1] - self.refused_before[begin + cols.start()]
+    }
+}
+
+/// The cells that a range of a coordinate meets, with those on the other side of a border; `None` if it leaves the raster. What lies on
+/// the border of the raster is on it.
+fn cells_in([low, high]: [f64; 2], count: usize) -> Option<std::ops::RangeInclusive<usize>> {
+    // Written so that NaN is off the raster.
+    let inside = low >= -ON_A_BORDER && high <= as_f64(count) + ON_A_BORDER;
+    if !inside {
+        return None;
+    }
+    let cell = |place: f64| as_index(place.floor().max(0.0)).map(|cell| cell.min(count - 1));
+    Some(cell(low - ON_A_BORDER)?..=cell(high + ON_A_BORDER)?)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
+const fn as_f64(index: usize) -> f64 {
+    index as f64
+}
+
+/// All layers of a terrain, in the order of their names: the first one that refuses counts.
+#[derive(Clone, Debug, Default)]
+pub struct MapLayers(std::sync::Arc<[Layer]>);
+
+impl MapLayers {
+    /// These layers.
+    pub fn new(mut layers: Vec<Layer>) -> Self {
+        layers.sort_by_key(|layer| layer.rule.name);
+        Self(layers.into())
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Every layer.
+    pub fn iter(&self) -> impl Iterator<Item = &Layer> {
+        self.0.iter()
+    }
+
+    /// The layer that refuses a contact at a position, if one does.
+    pub fn refusing_contact(&self, at: MapPoint) -> Option<LayerName> {
+        self.refusing(|rule| rule.on_contact, at, at)
+    }
+
+    /// The layer that refuses a flight from one position to another, if one does.
+    pub fn refusing_flight(&self, from: MapPoint, to: MapPoint) -> Option<LayerName> {
+        self.refusing(|rule| rule.on_flight, from, to)
+    }
+
+    /// The layer that refuses a hop from one position to another, by its contacts or its flight, if one does.
+    pub fn refusing_hop(&self, from: MapPoint, to: MapPoint) -> Option<LayerName> {
+        let contacts = || self.refusing_contact(from).or_else(|| self.refusing_contact(to));
+        contacts().or_else(|| self.refusing_flight(from, to))
+    }
+
+    /// The layer that refuses to be driven over from one position to another, if one does: wheels touch the ground all the way.
+    pub fn refusing_wheels(&self, from: MapPoint, to: MapPoint) -> Option<LayerName> {
+        self.refusing(|rule| rule.on_contact, from, to)
+    }
+
+    fn refusing(&self, counts: impl Fn(&LayerRule) -> bool, from: MapPoint, to: MapPoint) -> Option<LayerName> {
+        self.0.iter().find(|layer| counts(&layer.rule) && !layer.holds_between(from, to)).map(|layer| layer.rule.name)
+    }
+}
