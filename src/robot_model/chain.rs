@@ -126,11 +126,11 @@ impl LimbChain {
 
     /// The greatest effort of these as a share of its joint's limit; 0 if no joint states one.
     pub fn effort_share(&self, positions: &[f64], force_n: &Vector3<f64>) -> f64 {
-        share(self.efforts(positions, force_n), self.joints.iter().map(|joint| joint.effort_max))
+        share(&self.efforts(positions, force_n), self.joints.iter().map(|joint| joint.effort_max))
     }
 
-    /// The rates of the joints, rad/s or m/s, that move the foot at a velocity relative to the trunk, m/s, of least sum of squares. Where the limb is stretched or
-    /// folded, they are damped as in [`reach`](Self::reach), and the foot is slower.
+    /// The rates of the joints, rad/s or m/s, that move the foot at a velocity relative to the trunk, m/s, of least sum of squares. A limb that is
+    /// stretched or folded does not move in all directions: what it cannot do is left out, by a slight damping.
     pub fn rates(&self, positions: &[f64], velocity_m_s: &Vector3<f64>) -> Vec<f64> {
         let columns = self.jacobian(positions).1;
         let square = columns.iter().map(|column| column * column.transpose()).sum::<Matrix3<f64>>();
@@ -143,7 +143,7 @@ impl LimbChain {
 
     /// The greatest rate of these as a share of its joint's limit; 0 if no joint states one.
     pub fn rate_share(&self, positions: &[f64], velocity_m_s: &Vector3<f64>) -> f64 {
-        share(self.rates(positions, velocity_m_s), self.joints.iter().map(|joint| joint.rate_max))
+        share(&self.rates(positions, velocity_m_s), self.joints.iter().map(|joint| joint.rate_max))
     }
 }
 
@@ -157,7 +157,7 @@ fn moved(joint: &ChainJoint, position: f64) -> Frame {
     }
 }
 
-fn share(amounts: Vec<f64>, limits: impl Iterator<Item = Option<f64>>) -> f64 {
+fn share(amounts: &[f64], limits: impl Iterator<Item = Option<f64>>) -> f64 {
     let shares = amounts.iter().zip(limits).filter_map(|(amount, limit)| Some(amount.abs() / limit?));
     shares.fold(0.0, f64::max)
 }

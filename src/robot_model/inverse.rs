@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::LimbChain;
 
-/// Lengths below are shares of the limb's length. The damping at the beginning: a tenth of the size of a leg's Jacobian, so that steps near
-/// a stretched leg stay small.
+/// Lengths below are shares of the limb's length. The damping at the beginning: a bent leg's Jacobian is of the size of its length, so that steps are hardly
+/// shortened there, and stay small near a stretched leg, where the inverse without damping has no bound.
 const DAMPING: f64 = 1.0e-2;
 /// Damping falls by halves down to this where steps succeed, which makes the last ones fast; below it nothing is gained.
 const DAMPING_LEAST: f64 = 1.0e-4;
@@ -17,7 +17,7 @@ const CLOSE: f64 = 1.0e-9;
 const REACHED: f64 = 1.0e-3;
 /// Steps of one descent.
 const STEPS: usize = 50;
-/// Descents from different joints. On the shipped tests' robots four find every point that more find.
+/// Descents from different joints at most: one may end where joints are at their limits. More take more time for points that are out of reach.
 const SEEDS: usize = 16;
 /// The bases of the low-discrepancy sequence that spreads them; a limb with more joints repeats them.
 const BASES: [usize; 6] = [2, 3, 5, 7, 11, 13];

@@ -98,17 +98,12 @@ impl Reader<'_, '_> {
         let text = node.attribute(name)?;
         let numbers: Option<Vec<f64>> =
             text.split_whitespace().map(|word| word.parse().ok().filter(|number: &f64| number.is_finite())).collect();
-        match numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok()) {
-            Some(numbers) => Some(numbers),
-            None => {
-                let expected = if N == 1 { "a finite number".to_owned() } else { format!("{N} finite numbers") };
-                self.problem(
-                    node,
-                    format!("{name} of <{}> is '{}', expected {expected}", node.tag_name().name(), excerpt(text, 60)),
-                );
-                None
-            }
+        let numbers = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
+        if numbers.is_none() {
+            let expected = if N == 1 { "a finite number".to_owned() } else { format!("{N} finite numbers") };
+            self.problem(node, format!("{name} of <{}> is '{}', expected {expected}", node.tag_name().name(), excerpt(text, 60)));
         }
+        numbers
     }
 
     fn number(&mut self, node: &Node<'_, '_>, name: &str) -> Option<f64> {

@@ -237,7 +237,7 @@ fn inverse_kinematics_claims_no_more_and_no_less_than_a_grid_over_the_joints() {
         let (mut reached, mut beyond) = (0, 0);
         for _ in 0..60 {
             let offset =
-                Vector3::new(draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0)) * (1.3 * chain.length_m());
+                Vector3::new(draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0)) * (0.9 * chain.length_m());
             let target = chain.hip_m() + offset;
             let verdict = chain.reach(&target);
             let nearest = grid.iter().map(|foot| (foot - target).norm()).fold(f64::INFINITY, f64::min);

@@ -66,7 +66,7 @@ impl Builder<'_> {
 
     /// The robot; `None` if [`Robot::new`] refuses it. What is missing is replaced, so that all problems are found at once.
     fn robot(&mut self, read: &Parts, called: &str) -> Option<Robot> {
-        let parts = &read.parts[..];
+        let parts = &read.tables[..];
         let model = self.model(read);
         let whole = parts.iter().find(|part| part.table == "robot");
         self.unit_m = whole.and_then(|part| part.number("stl_unit_m")).unwrap_or(1.0);
@@ -100,7 +100,9 @@ impl Builder<'_> {
         match Robot::new(stated) {
             Ok(robot) => Some(robot),
             Err(InvalidRobot(problems)) => {
-                problems.iter().for_each(|problem| self.refuse(parts, problem));
+                for problem in &problems {
+                    self.refuse(parts, problem);
+                }
                 None
             }
         }

@@ -14,14 +14,14 @@ use crate::{
     world::TrunkBox,
 };
 
-/// A hip that is farther from the first joint than this share of the limb's length is said: two limbs may be exchanged. Hips of real machines are
-/// less than a third away.
+/// A hip that is farther from the first joint than this share of the limb's length is said: two limbs may be exchanged. A smaller
+/// share would complain of hips that stand for the middle of several joints.
 const HIP_SHARE: f64 = 0.5;
 
 impl Builder<'_> {
     /// The model that `robot.urdf` names, if it does and can be read.
     pub(super) fn model(&mut self, parts: &Parts) -> Option<RobotModel> {
-        let whole = parts.parts.iter().find(|part| part.table == "robot")?;
+        let whole = parts.tables.iter().find(|part| part.table == "robot")?;
         let path = self.file(whole.text("urdf")?);
         let model = fs::read_to_string(&path).map_err(|error| format!("cannot be read: {error}"));
         match model.and_then(|text| RobotModel::from_urdf(&text).map_err(|error| error.to_string())) {
@@ -92,5 +92,5 @@ impl Builder<'_> {
 
 /// Whether the file names a URDF, readable or not.
 pub(super) fn names_urdf(parts: &Parts) -> bool {
-    parts.parts.iter().any(|part| part.table == "robot" && part.has("urdf"))
+    parts.tables.iter().any(|part| part.table == "robot" && part.has("urdf"))
 }

@@ -73,7 +73,7 @@ fn path(table: &str, index: usize, name: &str) -> String {
 /// All tables, and what is wrong with them.
 #[derive(Debug, Default)]
 pub(super) struct Parts {
-    pub(super) parts: Vec<Part>,
+    pub(super) tables: Vec<Part>,
     pub(super) problems: Vec<ScenarioProblem>,
     /// The text could not be parsed, so that an absent key does not count as missing.
     pub(super) unreadable: bool,
@@ -156,7 +156,7 @@ impl Parts {
     fn part(&mut self, source: &str, table: &'static str, index: usize, span: Range<usize>, keys: &DeTable<'_>) {
         let mut part = Part { table, index, span, values: BTreeMap::new(), refused: Vec::new() };
         self.keys(source, &mut part, "", keys);
-        self.parts.push(part);
+        self.tables.push(part);
     }
 
     /// The keys of a table, and of the tables in it with their names in front.

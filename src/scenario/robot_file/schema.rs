@@ -29,9 +29,9 @@ pub fn robot_schema() -> Value {
             None => table["properties"][key.name] = value,
         }
     }
-    trunk["oneOf"] = json!([{ "required": ["size_m"] }, { "required": ["stl"] }]);
+    either(&mut trunk, "size_m", "stl");
     limb["required"] = json!(["name", "hip_m"]);
-    limb["oneOf"] = json!([{ "required": ["shell"] }, { "required": ["workspace_stl"] }]);
+    either(&mut limb, "shell", "workspace_stl");
     limb["properties"]["shell"]["required"] = json!(["radius_max_m"]);
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -46,6 +46,13 @@ pub fn robot_schema() -> Value {
         "required": ["limb"],
         "additionalProperties": false,
     })
+}
+
+/// One of two keys has to be there, and not both.
+fn either(table: &mut Value, one: &str, other: &str) {
+    table["if"] = json!({ "required": [one] });
+    table["then"] = json!({ "not": { "required": [other] } });
+    table["else"] = json!({ "required": [other] });
 }
 
 /// The values of a kind.

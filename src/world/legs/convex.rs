@@ -226,14 +226,14 @@ fn volume(points: &[Point3<f64>], triangles: &[[usize; 3]], from: &Point3<f64>) 
 fn open_edges(points: &[Point3<f64>], triangles: &[[usize; 3]]) -> usize {
     // Adding 0 makes -0 the same as 0.
     let place = |corner: usize| [0, 1, 2].map(|axis| (points[corner][axis] + 0.0).to_bits());
-    let mut balance: HashMap<_, i64> = HashMap::new();
+    let mut balance: HashMap<_, isize> = HashMap::new();
     for [a, b, c] in triangles.iter().map(|triangle| triangle.map(place)) {
         for (from, to) in [(a, b), (b, c), (c, a)] {
             let (key, sign) = if from < to { ((from, to), 1) } else { ((to, from), -1) };
             *balance.entry(key).or_default() += if from == to { 0 } else { sign };
         }
     }
-    balance.values().map(|count| count.unsigned_abs() as usize).sum()
+    balance.values().map(|count| count.unsigned_abs()).sum()
 }
 
 #[cfg(test)]

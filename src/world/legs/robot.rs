@@ -66,7 +66,7 @@ struct Problems(Vec<RobotProblem>);
 
 impl Problems {
     /// Notes a statement that does not hold.
-    fn ask(&mut self, holds: bool, part: &RobotPart, key: &'static str, found: impl ToString, expected: &'static str) {
+    fn ask(&mut self, holds: bool, part: &RobotPart, key: &'static str, found: &(impl ToString + ?Sized), expected: &'static str) {
         if !holds {
             self.0.push(RobotProblem { part: part.clone(), key, found: found.to_string(), expected });
         }
@@ -75,11 +75,11 @@ impl Problems {
     /// Notes a number of the robot that is given and does not hold.
     fn number(&mut self, key: &'static str, number: Option<f64>, holds: fn(f64) -> bool, expected: &'static str) {
         let found = number.unwrap_or_default();
-        self.ask(number.is_none_or(holds), &RobotPart::Robot, key, found, expected);
+        self.ask(number.is_none_or(holds), &RobotPart::Robot, key, &found, expected);
     }
 
     fn point(&mut self, part: &RobotPart, key: &'static str, point: &Point3<f64>) {
-        self.ask(point.iter().all(|x| x.is_finite()), part, key, list(point.coords), "three finite numbers");
+        self.ask(point.iter().all(|x| x.is_finite()), part, key, &list(point.coords), "three finite numbers");
     }
 }
 
@@ -139,7 +139,7 @@ impl Robot {
         problems.number("spin_max_rad_s", *spin_max_rad_s, not_negative, NOT_NEGATIVE);
         problems.point(&robot, "centre_of_mass_m", centre_of_mass_m);
         if let Some(moments) = inertia_kg_m2 {
-            problems.ask(is_inertia(*moments), &robot, "inertia_kg_m2", list((*moments).into()), INERTIA);
+            problems.ask(is_inertia(*moments), &robot, "inertia_kg_m2", &list((*moments).into()), INERTIA);
         }
         // No spin at all is a condition on the forces alone; a rate needs what turns a moment into one.
         let inertia_missing = spin_max_rad_s.is_some_and(|spin| spin > 0.0) && inertia_kg_m2.is_none();
@@ -153,7 +153,9 @@ impl Robot {
         problems.ask(!limbs.is_empty(), &robot, "limb", "absent", "at least one limb: a robot without limbs has no contact");
         let contacts = limbs.is_empty() || (1..=limbs.len()).contains(contacts_min);
         problems.ask(contacts, &robot, "contacts_min", contacts_min, "a whole number from 1 to the number of limbs");
-        trunk.iter().enumerate().for_each(|(index, part)| check_box(&mut problems, &RobotPart::Trunk(index), part));
+        for (index, part) in trunk.iter().enumerate() {
+            check_box(&mut problems, &RobotPart::Trunk(index), part);
+        }
         for (index, limb) in limbs.iter().enumerate() {
             let part = RobotPart::Limb(index, limb.name.clone());
             let other = limbs[..index].iter().all(|earlier| earlier.name != limb.name);
@@ -261,7 +263,13 @@ fn is_inertia(moments: [f64; 3]) -> bool {
 fn check_box(problems: &mut Problems, part: &RobotPart, trunk_box: &TrunkBox) {
     problems.point(part, "centre_m", &trunk_box.centre_m);
     let sizes = trunk_box.half_m.iter().all(|&half| positive(half));
-    problems.ask(sizes, part, "size_m", list(2.0 * trunk_box.half_m), "three finite numbers above 0: a box that is not inside out");
+    problems.ask(
+        sizes,
+        part,
+        "size_m",
+        &list(2.0 * trunk_box.half_m),
+        "three finite numbers above 0: a box that is not inside out",
+    );
     let axes = trunk_box.axes.matrix();
     let turned = (axes * axes.transpose()).is_identity(1e-9) && axes.determinant() > 0.0;
     problems.ask(turned, part, "roll_deg, pitch_deg, yaw_deg", "no rotation", "three finite angles");
@@ -273,10 +281,10 @@ fn check_limb(problems: &mut Problems, part: &RobotPart, limb: &Limb) {
     if let Some(friction) = limb.friction {
         let coefficient = friction.coefficient();
         let expected = "a finite number above 0: a foot without friction pushes along the normal alone and does not stand";
-        problems.ask(positive(coefficient), part, "friction_coefficient", coefficient, expected);
+        problems.ask(positive(coefficient), part, "friction_coefficient", &coefficient, expected);
     }
     if let Some(force) = limb.force_max_n {
-        problems.ask(positive(force), part, "force_max_n", force, POSITIVE);
+        problems.ask(positive(force), part, "force_max_n", &force, POSITIVE);
     }
     if let Workspace::Shell(shell) = &limb.workspace {
         check_shell(problems, part, shell);
@@ -285,15 +293,15 @@ fn check_limb(problems: &mut Problems, part: &RobotPart, limb: &Limb) {
 
 fn check_shell(problems: &mut Problems, part: &RobotPart, shell: &Shell) {
     let (least, greatest) = (shell.radius_min_m(), shell.radius_max_m());
-    problems.ask(not_negative(least), part, "shell.radius_min_m", least, NOT_NEGATIVE);
-    problems.ask(not_negative(greatest), part, "shell.radius_max_m", greatest, NOT_NEGATIVE);
+    problems.ask(not_negative(least), part, "shell.radius_min_m", &least, NOT_NEGATIVE);
+    problems.ask(not_negative(greatest), part, "shell.radius_max_m", &greatest, NOT_NEGATIVE);
     let ordered = least < greatest || (least == 0.0 && greatest == 0.0);
     let comparable = not_negative(least) && not_negative(greatest);
     problems.ask(
         ordered || !comparable,
         part,
         "shell.radius_min_m",
-        least,
+        &least,
         "less than shell.radius_max_m, or 0 for both: the contact is the hip",
     );
     let axis = shell.axis();
@@ -301,12 +309,12 @@ fn check_shell(problems: &mut Problems, part: &RobotPart, shell: &Shell) {
         (axis.norm() - 1.0).abs() < 1e-9,
         part,
         "shell.axis",
-        list(axis.into_inner()),
+        &list(axis.into_inner()),
         "three finite numbers that are not all 0",
     );
     let half = shell.half_angle();
     let in_range = half.radians() > 0.0 && half.radians() <= PI;
-    problems.ask(in_range, part, "shell.half_angle_deg", half.degrees(), "an angle above 0 and at most 180 degrees");
+    problems.ask(in_range, part, "shell.half_angle_deg", &half.degrees(), "an angle above 0 and at most 180 degrees");
 }
 
 #[cfg(test)]
