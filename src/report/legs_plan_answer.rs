@@ -56,6 +56,8 @@ pub struct StanceRecord {
     pub force_closure: bool,
     /// Whether the feet bear its weight without slipping.
     pub bears_weight: bool,
+    /// Whether it need not topple at rest.
+    pub upright: bool,
 }
 
 impl StanceRecord {
@@ -66,6 +68,7 @@ impl StanceRecord {
             contacts: FootRecord::all_of(ground, stance),
             force_closure: stance.cone().is_some_and(crate::ballistics::stance::ConeSum::is_everything),
             bears_weight: stance.cone().is_some_and(crate::ballistics::stance::ConeSum::holds_weight),
+            upright: ground.rests_upright(stance),
         }
     }
 }

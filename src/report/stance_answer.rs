@@ -1,12 +1,12 @@
 //! Where and how a robot with legs stands, and which way it may jump from there, as plain data and text.
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::text::{Sheet, place};
 use crate::{
-    ballistics::stance::{ConeKind, ConeSum, ContactCone},
+    ballistics::stance::{ConeKind, ConeSum, ContactCone, spin_free_cut},
     ground::{Foothold, LimbOutcome, NoStance, Pose, Stance, StanceGround},
     quantity::{Angle, SlopeInterval},
 };
@@ -30,8 +30,12 @@ pub struct StanceAnswer {
     pub force_closure: bool,
     /// Whether the feet bear its weight without slipping: straight up lies in the cone.
     pub bears_weight: bool,
+    /// Whether it need not topple at rest: its weight is borne without a moment about the centre of mass. Null for contacts alone.
+    pub upright: Option<bool>,
     /// Of the headings of the rose, the share in which it may take off.
     pub usable_headings: f64,
+    /// The share in which it may take off without any spin; null for contacts alone.
+    pub spin_free_headings: Option<f64>,
     /// The widest beam of take-off angles; null without one.
     pub widest_beam: Option<BeamRecord>,
     /// The take-off angles in every heading, by the exact cone and two that lie inside it.
@@ -105,6 +109,16 @@ pub struct RoseRecord {
     pub kc_plus: Option<ElevationRecord>,
     /// By the exact sum of the cones of the feet.
     pub k: Option<ElevationRecord>,
+    /// Of a robot, those take-offs without spin: the forces of the feet leave no angular momentum about the centre of mass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spin_free: Option<ElevationRecord>,
+    /// Of a robot, in the middle of the beam `k`: the least angular momentum for each kg and each m/s of the take-off, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub least_spin_m: Option<f64>,
+    /// Of a robot with stroke, mass and forces, in the middle of the beam `k`: the greatest take-off speed that they allow, m/s; absent where no
+    /// push along it is possible.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub push_speed_max_m_s: Option<f64>,
 }
 
 /// An interval of take-off angles over the horizontal.
@@ -202,13 +216,30 @@ impl StanceAnswer {
     /// Of a robot that stands; `poses`: how it was found.
     pub fn of_stance(ground: &StanceGround, stance: &Stance, (poses, height_m): (TriedPoses, Option<f64>), headings: u32) -> Self {
         let cones: Vec<ContactCone> = stance.footholds().iter().filter_map(Foothold::cone).collect();
-        Self {
+        let mut answer = Self {
             robot: Some(ground.robot().name().to_owned()),
             poses: Some(poses),
             pose: Some(PoseRecord::of(stance.pose(), height_m)),
             contacts: FootRecord::all_of(ground, stance),
+            upright: Some(ground.rests_upright(stance)),
             ..Self::of_cones(&cones, headings)
+        };
+        let arms = ground.arms(stance);
+        for row in &mut answer.rose {
+            let along = heading_of(row.heading_deg);
+            let Some(beam) = row.k else { continue };
+            row.spin_free = ElevationRecord::of(spin_free_cut(&arms, along).takeoff_slopes());
+            let middle = f64::midpoint(beam.takeoff_angle_min_deg, beam.takeoff_angle_max_deg);
+            let (sine, cosine) = libm::sincos(middle.to_radians());
+            let direction = Vector3::new(along.x * cosine, along.y * cosine, sine);
+            row.least_spin_m = ground.spin_of(stance, direction);
+            row.push_speed_max_m_s = ground.push_speed_max_m_s(stance, direction);
         }
+        let free = answer.rose.iter().filter(|row| row.spin_free.is_some()).count();
+        #[expect(clippy::cast_precision_loss, reason = "at most 3600 headings")]
+        let share = free as f64 / f64::from(headings);
+        answer.spin_free_headings = Some(share);
+        answer
     }
 
     /// Of contacts alone.
@@ -233,7 +264,9 @@ impl StanceAnswer {
             contacts,
             force_closure: false,
             bears_weight: false,
+            upright: None,
             usable_headings: 0.0,
+            spin_free_headings: None,
             widest_beam: None,
             rose: Vec::new(),
         }
@@ -246,7 +279,7 @@ impl StanceAnswer {
                 let heading_deg = 360.0 * f64::from(number) / f64::from(headings);
                 let along = heading_of(heading_deg);
                 let of = |cone: &ConeSum| ElevationRecord::of(cone.takeoff_slopes(along));
-                RoseRecord { heading_deg, kc: of(&kc), kc_plus: of(&kc_plus), k: of(&k) }
+                RoseRecord { heading_deg, kc: of(&kc), kc_plus: of(&kc_plus), k: of(&k), spin_free: None, least_spin_m: None, push_speed_max_m_s: None }
             })
             .collect();
         let beams = rose.iter().filter_map(|row| Some((row.heading_deg, row.k?.width_deg())));
@@ -263,7 +296,9 @@ impl StanceAnswer {
             contacts: Vec::new(),
             force_closure: k.is_everything(),
             bears_weight: k.holds_weight(),
+            upright: None,
             usable_headings,
+            spin_free_headings: None,
             widest_beam: widest.map(|(heading_deg, width_deg)| BeamRecord { heading_deg, width_deg }),
             rose,
         }
@@ -325,6 +360,15 @@ pub fn stance_text(answer: &StanceAnswer) -> String {
         sheet.line(format_args!("{weight}; take-offs in {:.0} % of headings", 100.0 * answer.usable_headings));
         if let Some(beam) = &answer.widest_beam {
             sheet.line(format_args!("widest beam: {:.3} deg, heading {:.1} deg", beam.width_deg, beam.heading_deg));
+        }
+        if let (Some(upright), Some(share)) = (answer.upright, answer.spin_free_headings) {
+            let rests = if upright { "need not topple at rest" } else { "topples at rest unless it balances" };
+            sheet.line(format_args!("{rests}; take-offs without spin in {:.0} % of headings", 100.0 * share));
+        }
+        let speeds = answer.rose.iter().filter_map(|row| row.push_speed_max_m_s);
+        if let Some(least) = speeds.clone().reduce(f64::min) {
+            let most = speeds.fold(0.0, f64::max);
+            sheet.line(format_args!("stroke and forces allow {least:.3} to {most:.3} m/s in the middles of the beams"));
         }
         sheet.line(format_args!("heading (deg)   take-off angles (deg) by Kc, Kc+ and the exact cone K"));
         let every = answer.rose.len().div_ceil(12);

@@ -8,9 +8,9 @@ use std::{
     path::Path,
 };
 
-use crate::desk::{ACROSS, CHAIN, Desk, FORWARD_ONLY, Ran};
+use crate::desk::{ACROSS, CHAIN, Desk, FORWARD_ONLY, FOUR_LEGS, Ran};
 
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 17] = [
     "run",
     "slice",
     "map",
@@ -21,6 +21,7 @@ const COMMANDS: [&str; 16] = [
     "trade",
     "compare",
     "simulate",
+    "stance",
     "arena",
     "synth",
     "bodies",
@@ -984,6 +985,41 @@ const SIMULATE: [Trial; 29] = [
     ),
 ];
 
+/// A stance on a raster.
+const STOOD: [&str; 10] =
+    ["stance", "ground.tif", "--robot", "four_legs.toml", "--at", "9,9", "--body", "mars", "--set", "surface.friction_coefficient=0.6"];
+
+/// The same with more words.
+macro_rules! stood {
+    ($($word:literal),*) => {
+        &[
+            "stance", "ground.tif", "--robot", "four_legs.toml", "--at", "9,9", "--body", "mars", "--set", "surface.friction_coefficient=0.6",
+            $($word),*
+        ]
+    };
+}
+
+const STANCE: [Trial; 14] = [
+    (
+        "--scenario",
+        &["stance", "ground.tif", "--robot", "four_legs.toml", "--at", "9,9", "--scenario", "map.toml"],
+        &["stance", "ground.tif", "--robot", "four_legs.toml", "--at", "9,9", "--scenario", "other_map.toml"],
+    ),
+    ("--robot", &STOOD, stood!["--robot", "one_leg.toml"]),
+    ("--at", &STOOD, stood!["--at", "10,4"]),
+    ("--heading-deg", &STOOD, stood!["--heading-deg", "33"]),
+    ("--height-m", &STOOD, stood!["--height-m", "0.2"]),
+    ("--up", &STOOD, stood!["--up", "vertical"]),
+    ("--contacts", &STOOD, &["stance", "--contacts", "contacts.csv"]),
+    ("--headings", &STOOD, stood!["--headings", "36"]),
+    ("--plot", &STOOD, stood!["--plot", "stance.svg"]),
+    ("--format", &STOOD, stood!["--format", "json"]),
+    ("--set", &STOOD, stood!["--set", "surface.friction_coefficient=0.9"]),
+    ("--body", &STOOD, stood!["--body", "moon"]),
+    ("--gravity-m-s2", &STOOD, stood!["--gravity-m-s2", "9"]),
+    ("--quiet", stood!["--set", "search.points_per_segment=3"], stood!["--set", "search.points_per_segment=3", "--quiet"]),
+];
+
 /// Errors of execution for trials.
 /// Without the run time on standard error, which is another one each time.
 const ARENA: [Trial; 12] = [
@@ -1086,6 +1122,10 @@ const SYNTH_OPTIONS: [(&str, &str); 26] = [
 fn desk() -> Desk {
     let desk = Desk::with_dem();
     desk.write("arena.toml", ACROSS);
+    desk.write("four_legs.toml", FOUR_LEGS);
+    desk.write("one_leg.toml", include_str!("../../data/robots/one_leg.toml"));
+    desk.write("other_map.toml", desk.read("map.toml").replace("= 0.8", "= 0.5"));
+    desk.write("contacts.csv", "normal_x,normal_y,normal_z,friction_coefficient\n0,0,1,0.6\n1,0,0.2,0.4\n");
     desk.write("starts.csv", "x_m,y_m\n3,4\n15,16\n");
     desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
     let over_mesh = "mesh = \"plate.obj\"\nroute = \"free\"\nstart_m = [1, 1, 1]\ngoal_m = [7, 7, 2]";
@@ -1138,6 +1178,7 @@ fn every_option_changes_the_output() {
         ("trade", &TRADE),
         ("compare", &COMPARE),
         ("simulate", &SIMULATE),
+        ("stance", &STANCE),
         ("arena", &ARENA),
         ("completions", &[]),
         ("man", &MAN),

@@ -4,12 +4,12 @@
 
 use std::{fs, path::Path};
 
-use crate::desk::{ACROSS, Desk};
+use crate::desk::{ACROSS, Desk, FOUR_LEGS};
 
 /// A command that ends with 0, and one that ends with 1.
 type Case = (&'static str, &'static [&'static str], Option<&'static [&'static str]>);
 
-const CASES: [Case; 17] = [
+const CASES: [Case; 18] = [
     ("run", &["run", "scenario.toml", "-o", "out"], Some(&["run", "slippery.toml", "-o", "out"])),
     ("slice", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], None),
     ("fan", &["fan", "ground.tif", "--from", "9,9", "--headings", "4", "--length", "5", "--scenario", "map.toml"], None),
@@ -37,6 +37,11 @@ const CASES: [Case; 17] = [
         Some(&["compare", "scenario.toml", "slippery.toml", "--require-all"]),
     ),
     ("simulate", &["simulate", "trials.toml"], Some(&["simulate", "slippery.toml"])),
+    (
+        "stance",
+        &["stance", "ground.tif", "--robot", "four_legs.toml", "--at", "9,9", "--scenario", "map.toml"],
+        Some(&["stance", "ground.tif", "--robot", "four_legs.toml", "--at", "9,9", "--scenario", "map.toml", "--height-m", "9"]),
+    ),
     ("arena", &["arena", "arena.toml"], Some(&["arena", "arena.toml", "--no-jump"])),
     ("synth", &["synth", "--rows", "9", "--cols", "9", "-o", "new.tif"], None),
     ("bodies", &["bodies"], None),
@@ -60,6 +65,7 @@ fn every_command_ends_with_the_status_of_the_documents() {
         desk.write("slippery.toml", desk.read("scenario.toml").replace("= 0.6", "= 0.05") + trials);
         desk.write("weak_map.toml", desk.read("map.toml").replace("= 6.0", "= 0.3"));
         desk.write("arena.toml", ACROSS);
+        desk.write("four_legs.toml", FOUR_LEGS);
         desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
         for (status, words) in [(0, Some(yes)), (1, no)] {
             let Some(words) = words else { continue };

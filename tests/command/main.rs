@@ -47,6 +47,7 @@ mod sentences;
 mod setup;
 mod shipped_scenarios;
 mod simulate_command;
+mod stance;
 mod stated_maps;
 mod studies;
 mod success;

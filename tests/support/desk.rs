@@ -26,6 +26,9 @@ pub(crate) const ON_MAP: &str = "[body]\nname = \"mars\"\n\n[hopper]\ntakeoff_sp
 pub(crate) const FORWARD_ONLY: &str = "x_m,z_m,takeoff_min_deg,takeoff_max_deg,takeoff_speed_max_m_s,landing_min_deg,landing_max_deg,\
     landing_speed_max_m_s\n0,0,5,80,30,-80,-5,60\n10,0,,,,,,\n";
 
+/// A robot with four legs.
+pub(crate) const FOUR_LEGS: &str = include_str!("../../data/robots/four_legs.toml");
+
 /// A floor with a box across it, which only a jump crosses.
 pub(crate) const ACROSS: &str = "[arena]\nsize_m = [9, 6]\nstart_m = [1, 3]\ngoal_m = [8, 4]\n\n[jumper]\nspeed_m_s = 1.5\nwheelbase_m = 0.2\n\
     jump_time_s = 0.5\nrise_max_m = 0.6\n\n[[box]]\ncentre_m = [4, 3]\nsize_m = [2, 6]\nheight_m = 0.5\n";

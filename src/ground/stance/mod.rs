@@ -24,6 +24,9 @@ mod push;
 mod stand;
 mod trunk;
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::Arc;
 
 use nalgebra::{Point3, Vector3};

@@ -140,13 +140,13 @@ impl StanceGround {
     }
 
     /// The standing feet with their strengths; `None` if one states none.
-    fn limbs(&self, stance: &Stance) -> Option<Vec<Limb>> {
+    pub(crate) fn limbs(&self, stance: &Stance) -> Option<Vec<Limb>> {
         let limb = |foot: &Foothold| Limb::new(foot.cone()?, self.robot().limbs()[foot.limb].force_max_n?).ok();
         stance.footholds().iter().map(limb).collect()
     }
 
     /// The standing feet as seen from the centre of mass.
-    fn arms(&self, stance: &Stance) -> Vec<stance::Foothold> {
+    pub(crate) fn arms(&self, stance: &Stance) -> Vec<stance::Foothold> {
         let centre = stance.pose().to_ground(&self.robot().centre_of_mass_m());
         let arm = |foot: &Foothold| Some(stance::Foothold { cone: foot.cone()?, arm_m: foot.point_m - centre });
         stance.footholds().iter().filter_map(arm).collect()
@@ -155,6 +155,14 @@ impl StanceGround {
     /// Whether a robot that rests on its feet need not topple: its weight is borne without a moment.
     pub fn rests_upright(&self, stance: &Stance) -> bool {
         stance.point().is_some() || stance::holds_upright(&self.arms(stance))
+    }
+
+    /// The greatest take-off speed along a direction of length 1 that stroke and forces allow, m/s, by what is proved; `None` unless the robot states
+    /// stroke, mass and forces, or if no push is possible along it.
+    pub fn push_speed_max_m_s(&self, stance: &Stance, direction: Vector3<f64>) -> Option<f64> {
+        let (limbs, stroke_m, mass_kg) = (self.limbs(stance)?, self.robot().stroke_m()?, self.mass_kg()?);
+        let g = self.mesh().envelope().gravity_m_s2();
+        Some(greatest_push_speed_m_s(&limbs, direction, stroke_m, mass_kg, g)?.lower)
     }
 
     /// The least angular momentum of a take-off, for each kg, m^2/s, by what was found; `None` if the feet do not push that way.

@@ -30,7 +30,7 @@ pub(crate) fn mesh_of(quads: &[[[f64; 3]; 4]]) -> Mesh {
 }
 
 /// The six sides of a box.
-fn cuboid([x0, y0, z0]: [f64; 3], [x1, y1, z1]: [f64; 3]) -> [[[f64; 3]; 4]; 6] {
+pub(crate) fn cuboid([x0, y0, z0]: [f64; 3], [x1, y1, z1]: [f64; 3]) -> [[[f64; 3]; 4]; 6] {
     [
         [[x0, y0, z1], [x1, y0, z1], [x1, y1, z1], [x0, y1, z1]],
         [[x0, y0, z0], [x0, y1, z0], [x1, y1, z0], [x1, y0, z0]],
