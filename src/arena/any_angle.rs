@@ -189,12 +189,13 @@ impl<'a> AnyAngle<'a> {
                 return Some(self.found(&labels, number, goal_level_m));
             }
             // A label that came earlier is at least as good if even turning into this one's direction makes it no later.
-            let is_dominated = settled[own].iter().map(|(other, other_m)| (&labels[*other as usize], *other_m)).any(|(other, other_m)| {
-                let turn_s = self.tariff.turn_s_per_rad * turn_rad(other.direction, label.direction);
-                other.time_s + turn_s <= label.time_s + SAME_S
-                    && other_m >= level_m
-                    && (!bounded || other.energy_j + power * turn_s <= label.energy_j + SAME_S)
-            });
+            let is_dominated =
+                settled[own].iter().map(|(other, other_m)| (&labels[*other as usize], *other_m)).any(|(other, other_m)| {
+                    let turn_s = self.tariff.turn_s_per_rad * turn_rad(other.direction, label.direction);
+                    other.time_s + turn_s <= label.time_s + SAME_S
+                        && other_m >= level_m
+                        && (!bounded || other.energy_j + power * turn_s <= label.energy_j + SAME_S)
+                });
             if is_dominated {
                 continue;
             }

@@ -49,9 +49,10 @@ impl AnyComparison {
     /// The answer as one document.
     pub(crate) fn document(&self) -> Result<String, Failure> {
         let (records, warnings): (Vec<&CaseRecord>, Vec<String>) = match self {
-            Self::Chains(loaded, comparison) => {
-                (loaded.iter().map(|one| &one.record).collect(), comparison.compared.iter().flat_map(Compared::<Planned>::warnings).collect())
-            }
+            Self::Chains(loaded, comparison) => (
+                loaded.iter().map(|one| &one.record).collect(),
+                comparison.compared.iter().flat_map(Compared::<Planned>::warnings).collect(),
+            ),
             Self::Mesh(inputs, comparison) => (
                 inputs.iter().map(MeshPlanInput::record).collect(),
                 comparison.compared.iter().flat_map(Compared::<MeshRouted>::warnings).collect(),

@@ -43,7 +43,8 @@ pub(super) type LoftMemo = RefCell<PairMemo<Option<SlopeInterval>>>;
 /// The hops between nodes of the lattice, with what those of each offset take at least.
 struct Tables<'a> {
     hops: &'a TableHops,
-    least: Vec<Amounts>,
+    /// With the time to settle, and without.
+    least: [Vec<Amounts>; 2],
     /// The node of the lattice for which the machine does not settle.
     spared: Option<SurfaceNode>,
 }
@@ -136,7 +137,8 @@ impl<'a> LegOffers<'a> {
                 Settling::AfterAllBut(goal) => hops.node_at(goal),
                 Settling::AfterAll => None,
             };
-            Tables { hops, least: hops.runs_m().map(|run_m| self.least.of_any_hop(run_m)).collect(), spared }
+            let least = |is_spared| hops.runs_m().map(|run_m| self.settled(&self.least.of_any_hop(run_m), is_spared)).collect();
+            Tables { hops, least: [least(false), least(true)], spared }
         };
         Self { tables: tables.map(of_hops), ..self }
     }
@@ -263,7 +265,7 @@ impl<'a> LegOffers<'a> {
                 Side::Goal => ([other, node], there),
             };
             let is_spared = tables.spared.is_some_and(|spared| self.settling.is_spared_between(nodes, spared));
-            if !leads_on(other) || !visitor.wants(other.index(), &self.settled(&tables.least[offset], is_spared)) {
+            if !leads_on(other) || !visitor.wants(other.index(), &tables.least[usize::from(is_spared)][offset]) {
                 continue;
             }
             tested += 1;

@@ -2,7 +2,10 @@
 
 use nalgebra::Vector2;
 
-use super::{SurfaceNode, SurfaceNodes, surface_hops::{Feasible, Side}};
+use super::{
+    SurfaceNode, SurfaceNodes,
+    surface_hops::{Feasible, Side},
+};
 use crate::{
     ground::{DemGround, NodeLattice, Post, PostHops},
     quantity::MapPoint,

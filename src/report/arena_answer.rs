@@ -187,7 +187,10 @@ fn flight(sheet: &mut Sheet, answer: &ArenaAnswer) {
 /// All planners side by side.
 fn compared(sheet: &mut Sheet, answer: &ArenaAnswer) {
     let Some(rows) = &answer.compared else { return };
-    sheet.line(format_args!("  {:<12}{:>12}{:>7}{:>14}{:>10}{:>12}", "planner", "time, s", "jumps", "no jumps, s", "saves, s", "above, %"));
+    sheet.line(format_args!(
+        "  {:<12}{:>12}{:>7}{:>14}{:>10}{:>12}",
+        "planner", "time, s", "jumps", "no jumps, s", "saves, s", "above, %"
+    ));
     let seconds = |time_s: Option<f64>| time_s.map_or_else(|| "-".to_owned(), |time_s| format!("{time_s:.4}"));
     for row in rows {
         let name = row.reading.as_ref().map_or_else(|| row.planner.clone(), |reading| format!("{} {reading}", row.planner));

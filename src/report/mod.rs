@@ -44,9 +44,7 @@ mod travel_simulate_answer;
 mod travel_text;
 
 pub use advice::AdviceRecord;
-pub use arena_answer::{
-    ArenaAnswer, ArenaComparedRecord, ArenaFlightRecord, ArenaHistoryRecord, ArenaPointRecord, arena_text,
-};
+pub use arena_answer::{ArenaAnswer, ArenaComparedRecord, ArenaFlightRecord, ArenaHistoryRecord, ArenaPointRecord, arena_text};
 pub use check_answer::{
     CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, JourneyEnd, MissRecord, PairsAnswer, verdict_of,
 };

@@ -92,11 +92,7 @@ pub fn plan_in_arena(arena: &Arena, planner: ArenaPlanner, may_jump: bool) -> Re
 ///
 /// # Errors
 /// [`ArenaError::Defect`].
-pub fn compare_planners(
-    arena: &Arena,
-    options: RrtStarOptions,
-    may_jump: bool,
-) -> Result<Vec<ArenaComparedRecord>, ArenaError> {
+pub fn compare_planners(arena: &Arena, options: RrtStarOptions, may_jump: bool) -> Result<Vec<ArenaComparedRecord>, ArenaError> {
     let [r1, r0] = [Reading::R1, Reading::R0].map(ArenaPlanner::Grid);
     let planners = [ArenaPlanner::AnyAngle, r1, r0, ArenaPlanner::RrtStar(options)];
     planners

@@ -67,8 +67,8 @@ impl Comparison<MeshRouted> {
             lines.push(format!("start and goal are those of {}; other paths have their own", first.row.name));
         }
         let names: Vec<_> = self.compared.iter().map(|one| one.row.name.as_str()).collect();
-        let [start, goal] =
-            [first.planned.grown.ends.0, first.planned.grown.ends.1].map(|node| first.planned.grown.roadmap.contact(node).point_m());
+        let [start, goal] = [first.planned.grown.ends.0, first.planned.grown.ends.1]
+            .map(|node| first.planned.grown.roadmap.contact(node).point_m());
         let route = |one| {
             let Compared { planned: routed, row }: &Compared<MeshRouted> = one;
             let gravity_m_s2 = routed.ground.envelope().gravity_m_s2();

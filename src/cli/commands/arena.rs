@@ -2,7 +2,10 @@
 
 use std::time::Instant;
 
-use chta::{report::arena_text, study::{compare_planners, plan_in_arena}};
+use chta::{
+    report::arena_text,
+    study::{compare_planners, plan_in_arena},
+};
 
 use crate::cli::{
     Answer, Failure,

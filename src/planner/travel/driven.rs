@@ -58,11 +58,7 @@ fn unless_cancelled<T>(error: &DriveError) -> Result<Option<T>, RouteError> {
 
 /// The totals of all amounts along the quickest ways: node after node by time, over the legs that set its time. `None` if a leg takes no time
 /// beside the time before it, so that this is no order of travel.
-fn totals(
-    edges: &DriveEdges<'_>,
-    (map, ends): (&DriveMap, &[usize]),
-    (rover, amounts): (&Rover, &[Amount]),
-) -> Option<Vec<f64>> {
+fn totals(edges: &DriveEdges<'_>, (map, ends): (&DriveMap, &[usize]), (rover, amounts): (&Rover, &[Amount])) -> Option<Vec<f64>> {
     let (costs, width) = (map.costs(), amounts.len());
     let mut order: Vec<usize> = (0..costs.len()).filter(|node| costs[*node].is_finite()).collect();
     order.sort_unstable_by(|a, b| costs[*a].total_cmp(&costs[*b]).then(a.cmp(b)));

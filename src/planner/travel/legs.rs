@@ -278,7 +278,8 @@ impl LegGraph for TravelLegs<'_> {
         // Driving first: what it reaches sooner is not tested for a hop.
         self.drive_from((node, &at), layer, visitor)?;
         if let Some(hops) = self.hops {
-            let tested = hops.visit((node, self.side), &|_| true, visitor, self.hop_memo.as_ref(), &mut self.counter.borrow_mut())?;
+            let tested =
+                hops.visit((node, self.side), &|_| true, visitor, self.hop_memo.as_ref(), &mut self.counter.borrow_mut())?;
             self.hops_tested.set(self.hops_tested.get() + tested);
         }
         Ok(())

@@ -97,7 +97,8 @@ impl Mission {
     /// within reach of a hop.
     pub fn bytes(ground: &DemGround, nodes: &SurfaceNodes, rover: &Rover, travel: Travel) -> u64 {
         let turns = travel.drives() && rover.limits().turn_s_per_deg > 0.0;
-        4 * TravelLegs::layers(turns, rover.limits().neighbours.count()) as u64 * nodes.count() as u64 + SurfaceHops::bytes(ground, nodes)
+        4 * TravelLegs::layers(turns, rover.limits().neighbours.count()) as u64 * nodes.count() as u64
+            + SurfaceHops::bytes(ground, nodes)
     }
 
     /// The bytes of all that a search may hold to be faster ([`MissionQuestion::kept_bytes_max`]).

@@ -12,7 +12,8 @@ fn near(a: f64, b: f64) -> bool {
 }
 
 /// What is to be least.
-const AMOUNTS: [&[Amount]; 3] = [&[Amount::MissionTime, Amount::Energy], &[Amount::Energy], &[Amount::Distance, Amount::MissionTime]];
+const AMOUNTS: [&[Amount]; 3] =
+    [&[Amount::MissionTime, Amount::Energy], &[Amount::Energy], &[Amount::Distance, Amount::MissionTime]];
 
 #[test]
 fn missions_are_the_same_whatever_a_search_holds() {
@@ -112,20 +113,19 @@ fn no_mission_takes_less_than_its_bounds() {
         let goal = world.nodes.place(world.ends[1]).unwrap();
         let at = world.nodes.position(&world.ground, goal).unwrap();
         let hops = LeastAmounts::over_dem(&world.ground);
-        for (means, amount) in Travel::ALL.into_iter().flat_map(|means| {
-            [Amount::MissionTime, Amount::Energy, Amount::Distance].map(|amount| (means, amount))
-        }) {
-            let least = LeastLeft::of(
-                &world.ground,
-                means.drives().then_some(&world.rover),
-                means.hops().then_some(&hops),
-            );
+        for (means, amount) in Travel::ALL
+            .into_iter()
+            .flat_map(|means| [Amount::MissionTime, Amount::Energy, Amount::Distance].map(|amount| (means, amount)))
+        {
+            let least = LeastLeft::of(&world.ground, means.drives().then_some(&world.rover), means.hops().then_some(&hops));
             let objective = objective(&[amount]);
             let question = world.question(&objective, &Budgets::NONE, means);
             let asked = (&question, TakeoffChoice::LeastTime, Toward::Start);
             let field = travel_field((&world.ground, &world.nodes), &[goal], asked, &()).unwrap();
             for node in (0..world.nodes.count()).map(SurfaceNode::of_index) {
-                let (Some(total), Some(from)) = (field.total(node, amount), world.nodes.position(&world.ground, node)) else { continue };
+                let (Some(total), Some(from)) = (field.total(node, amount), world.nodes.position(&world.ground, node)) else {
+                    continue;
+                };
                 let bound = least.between(&from, &at).of(amount);
                 assert!(bound <= total, "case {case}, {means}: {amount} {total}, bound {bound}");
                 rests += 1;
