@@ -59,6 +59,16 @@ enum Sighted {
     Yes(Crossed),
 }
 
+/// The straight line from one place to another.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    direction: [f64; 2],
+    length_m: f64,
+    /// The height just beyond its beginning, m.
+    first_m: f64,
+    sighted: Sighted,
+}
+
 /// How a corner is reached.
 #[derive(Clone, Copy, Debug)]
 struct Label {
@@ -67,8 +77,8 @@ struct Label {
     time_s: f64,
     energy_j: f64,
     direction: [f64; 2],
-    /// The height on arrival, m.
-    level_m: f64,
+    /// The height on arrival, m; of a line that is not looked at yet the jumps at its beginning.
+    level_m: Result<f64, u32>,
 }
 
 struct AnyAngle<'a> {
@@ -77,8 +87,8 @@ struct AnyAngle<'a> {
     rise_max_m: f64,
     /// Start, goal, then the corners.
     corners: Vec<Corner>,
-    /// By the two places, row by row; `None`: not looked at yet.
-    sights: Vec<Option<Vec<Sighted>>>,
+    /// The lines from each place to all; `None` until one is asked for.
+    lines: Vec<Option<Vec<Line>>>,
 }
 
 /// A path as its corners.
@@ -108,24 +118,38 @@ impl<'a> AnyAngle<'a> {
             corners.extend(row.filter(Corner::has_bend));
         }
         let rise_max_m = if may_jump { arena.jumper().rise_max_m } else { 0.0 };
-        let sights = vec![None; corners.len()];
-        Self { arena, tariff, rise_max_m, corners, sights }
+        let lines = vec![None; corners.len()];
+        Self { arena, tariff, rise_max_m, corners, lines }
+    }
+
+    /// The line from one place to another.
+    fn line(&mut self, from: usize, to: usize) -> &mut Line {
+        let Self { corners, lines, .. } = self;
+        let origin = &corners[from];
+        let line = |end: &Corner| {
+            let way = end.point - origin.point;
+            let length_m = way.norm();
+            let direction = if length_m > SAME_M { [way.x / length_m, way.y / length_m] } else { [0.0; 2] };
+            Line { direction, length_m, first_m: origin.level_towards(direction), sighted: Sighted::Unknown }
+        };
+        &mut lines[from].get_or_insert_with(|| corners.iter().map(line).collect())[to]
     }
 
     /// What the line between two places crosses, where a taut path may take it; looked at once.
-    fn sight(&mut self, from: usize, to: usize, direction: [f64; 2]) -> Option<Crossed> {
-        let count = self.corners.len();
-        let row = self.sights[from].get_or_insert_with(|| vec![Sighted::Unknown; count]);
-        if let Sighted::Unknown = row[to] {
-            let (origin, end) = (&self.corners[from], &self.corners[to]);
-            let crossed = self.arena.levels().crossed(origin.point, end.point, self.rise_max_m);
-            // Where it goes on straight, the line to the next place is a line of its own.
-            let is_useful = |crossed: &Crossed| to == GOAL || end.may_bend(direction, crossed.end_m, self.rise_max_m);
-            row[to] = crossed.filter(is_useful).map_or(Sighted::No, Sighted::Yes);
-        }
-        match row[to] {
+    fn sight(&mut self, from: usize, to: usize) -> Option<Crossed> {
+        let Line { direction, sighted, .. } = *self.line(from, to);
+        match sighted {
             Sighted::Yes(crossed) => Some(crossed),
-            Sighted::Unknown | Sighted::No => None,
+            Sighted::No => None,
+            Sighted::Unknown => {
+                let (origin, end) = (&self.corners[from], &self.corners[to]);
+                let crossed = self.arena.levels().crossed(origin.point, end.point, self.rise_max_m);
+                // Where it goes on straight, the line to the next place is a line of its own.
+                let is_useful = |crossed: &Crossed| to == GOAL || end.may_bend(direction, crossed.end_m, self.rise_max_m);
+                let useful = crossed.filter(is_useful);
+                self.line(from, to).sighted = useful.map_or(Sighted::No, Sighted::Yes);
+                useful
+            }
         }
     }
 
@@ -137,58 +161,79 @@ impl<'a> AnyAngle<'a> {
         let power = jumper.power_w;
         let bounded = jumper.battery_j.is_finite();
         let first =
-            Label { corner: 0, parent: 0, time_s: 0.0, energy_j: 0.0, direction: self.arena.heading(), level_m: start_level_m };
+            Label { corner: 0, parent: 0, time_s: 0.0, energy_j: 0.0, direction: self.arena.heading(), level_m: Ok(start_level_m) };
+        let rests_s: Vec<f64> =
+            self.corners.iter().map(|corner| (goal - corner.point).norm() / self.tariff.speed_m_s * (1.0 - SAME_S)).collect();
         let mut labels = vec![first];
-        let mut settled: Vec<Vec<u32>> = vec![Vec::new(); self.corners.len()];
+        // The settled labels of each corner, with their heights.
+        let mut settled: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.corners.len()];
         let mut waiting = BinaryHeap::from([Waiting { bound_s: 0.0, label: 0 }]);
         while let Some(Waiting { label: number, .. }) = waiting.pop() {
             let label = labels[number as usize];
             let own = label.corner as usize;
+            let level_m = match label.level_m {
+                Ok(level_m) => level_m,
+                Err(up) => {
+                    // A line is looked at when its turn comes as if it crossed nothing: most never do.
+                    let Some((seen, crossed)) = self.seen(&labels, label, up) else { continue };
+                    labels[number as usize] = seen;
+                    if crossed.jumps > 0 {
+                        waiting.push(Waiting { bound_s: seen.time_s + rests_s[own], label: number });
+                        continue;
+                    }
+                    crossed.end_m
+                }
+            };
+            let label = labels[number as usize];
             if own == GOAL {
                 return Some(self.found(&labels, number, goal_level_m));
             }
             // A label that came earlier is at least as good if even turning into this one's direction makes it no later.
-            let is_dominated = settled[own].iter().map(|other| &labels[*other as usize]).any(|other| {
-                let turn_s = self.tariff.turn_s_per_rad * turn_rad(other.direction, label.direction);
-                other.time_s + turn_s <= label.time_s + SAME_S
-                    && other.level_m >= label.level_m
-                    && (!bounded || other.energy_j + power * turn_s <= label.energy_j + SAME_S)
-            });
+            let is_dominated =
+                settled[own].iter().map(|(other, other_m)| (&labels[*other as usize], *other_m)).any(|(other, other_m)| {
+                    let turn_s = self.tariff.turn_s_per_rad * turn_rad(other.direction, label.direction);
+                    other.time_s + turn_s <= label.time_s + SAME_S
+                        && other_m >= level_m
+                        && (!bounded || other.energy_j + power * turn_s <= label.energy_j + SAME_S)
+                });
             if is_dominated {
                 continue;
             }
-            settled[own].push(number);
-            for to in (GOAL..self.corners.len()).filter(|to| *to != own) {
-                let way = self.corners[to].point - self.corners[own].point;
-                let length_m = way.norm();
-                if length_m <= SAME_M {
+            settled[own].push((number, level_m));
+            for (to, rest_s) in rests_s.iter().enumerate().skip(GOAL).filter(|(to, _)| *to != own) {
+                let Line { direction, length_m, first_m, sighted } = *self.line(own, to);
+                if length_m <= SAME_M || matches!(sighted, Sighted::No) {
                     continue;
                 }
-                let direction = [way.x / length_m, way.y / length_m];
                 let corner = &self.corners[own];
-                let first_m = corner.level_towards(direction);
-                let Some(up) = jumps_between(label.level_m, first_m, &corner.quadrants, self.rise_max_m) else { continue };
-                if own != START && !corner.bends_around((label.direction, direction), (label.level_m, first_m), up, self.rise_max_m)
-                {
+                let Some(up) = jumps_between(level_m, first_m, &corner.quadrants, self.rise_max_m) else { continue };
+                if own != START && !corner.bends_around((label.direction, direction), (level_m, first_m), up, self.rise_max_m) {
                     continue;
                 }
-                let Some(crossed) = self.sight(own, to, direction) else { continue };
-                let jumps = up + crossed.jumps;
                 let turn_s = self.tariff.turn_s_per_rad * turn_rad(label.direction, direction);
-                let part_s = turn_s + length_m / self.tariff.speed_m_s + f64::from(jumps) * self.tariff.jump_time_s;
-                let energy_j = label.energy_j + jumper.energy_j(length_m, jumps, part_s);
-                if energy_j > jumper.battery_j {
-                    continue;
-                }
-                let time_s = label.time_s + part_s;
-                let rest_s = (goal - self.corners[to].point).norm() / self.tariff.speed_m_s;
+                let time_s = label.time_s + (turn_s + length_m / self.tariff.speed_m_s + f64::from(up) * self.tariff.jump_time_s);
                 let next = u32::try_from(labels.len()).unwrap_or(u32::MAX);
                 let corner = u32::try_from(to).unwrap_or(u32::MAX);
-                labels.push(Label { corner, parent: number, time_s, energy_j, direction, level_m: crossed.end_m });
-                waiting.push(Waiting { bound_s: time_s + rest_s * (1.0 - SAME_S), label: next });
+                labels.push(Label { corner, parent: number, time_s, energy_j: label.energy_j, direction, level_m: Err(up) });
+                waiting.push(Waiting { bound_s: time_s + rest_s, label: next });
             }
         }
         None
+    }
+
+    /// A label whose line is looked at, and what the line crosses; `None` where no path takes it.
+    fn seen(&mut self, labels: &[Label], label: Label, up: u32) -> Option<(Label, Crossed)> {
+        let jumper = *self.arena.jumper();
+        let before = &labels[label.parent as usize];
+        let (from, to) = (before.corner as usize, label.corner as usize);
+        let crossed = self.sight(from, to)?;
+        let length_m = self.line(from, to).length_m;
+        let jumps = up + crossed.jumps;
+        let turn_s = self.tariff.turn_s_per_rad * turn_rad(before.direction, label.direction);
+        let part_s = turn_s + length_m / self.tariff.speed_m_s + f64::from(jumps) * self.tariff.jump_time_s;
+        let energy_j = before.energy_j + jumper.energy_j(length_m, jumps, part_s);
+        let label = Label { time_s: before.time_s + part_s, energy_j, level_m: Ok(crossed.end_m), ..label };
+        (energy_j <= jumper.battery_j).then_some((label, crossed))
     }
 
     /// The path that ends with a label.
@@ -200,7 +245,7 @@ impl<'a> AnyAngle<'a> {
             ways.push(labels[number as usize].corner as usize);
         }
         ways.reverse();
-        let mut trace = Trace::at(self.corners[START].point, labels[0].level_m, self.rise_max_m);
+        let mut trace = Trace::at(self.corners[START].point, labels[0].level_m.unwrap_or(0.0), self.rise_max_m);
         for pair in ways.windows(2) {
             let (from, to) = (&self.corners[pair[0]], &self.corners[pair[1]]);
             let mut steps = Vec::new();

@@ -6,8 +6,8 @@ use chta::{
     figure::{FigureError, Picture, SeenFrom},
     report::{CompareAnswer, CompareRow},
     study::{
-        CaseRecord, Compared, Comparison, MeshCompared, MeshComparison, MeshRouteQuestion, PlanOptions, TravelCompared,
-        TravelComparison, TravelOptions, mesh_route, plan, travel_plan,
+        CaseRecord, Compared, Comparison, MeshRouteQuestion, MeshRouted, PlanOptions, Planned, TravelOptions, TravelPlanned,
+        mesh_route, plan, travel_plan,
     },
 };
 
@@ -29,11 +29,11 @@ use super::{
 #[derive(Debug)]
 pub(crate) enum AnyComparison {
     /// Along chains.
-    Chains(Vec<Loaded>, Comparison),
+    Chains(Vec<Loaded>, Comparison<Planned>),
     /// Over one mesh.
-    Mesh(Vec<MeshPlanInput>, MeshComparison),
+    Mesh(Vec<MeshPlanInput>, Comparison<MeshRouted>),
     /// Missions that drive.
-    Travel(Vec<Loaded>, TravelComparison),
+    Travel(Vec<Loaded>, Comparison<TravelPlanned>),
 }
 
 impl AnyComparison {
@@ -49,16 +49,17 @@ impl AnyComparison {
     /// The answer as one document.
     pub(crate) fn document(&self) -> Result<String, Failure> {
         let (records, warnings): (Vec<&CaseRecord>, Vec<String>) = match self {
-            Self::Chains(loaded, comparison) => {
-                (loaded.iter().map(|one| &one.record).collect(), comparison.compared.iter().flat_map(Compared::warnings).collect())
-            }
+            Self::Chains(loaded, comparison) => (
+                loaded.iter().map(|one| &one.record).collect(),
+                comparison.compared.iter().flat_map(Compared::<Planned>::warnings).collect(),
+            ),
             Self::Mesh(inputs, comparison) => (
                 inputs.iter().map(MeshPlanInput::record).collect(),
-                comparison.compared.iter().flat_map(MeshCompared::warnings).collect(),
+                comparison.compared.iter().flat_map(Compared::<MeshRouted>::warnings).collect(),
             ),
             Self::Travel(loaded, comparison) => (
                 loaded.iter().map(|one| &one.record).collect(),
-                comparison.compared.iter().flat_map(TravelCompared::warnings).collect(),
+                comparison.compared.iter().flat_map(Compared::<TravelPlanned>::warnings).collect(),
             ),
         };
         comparison_document(&records, warnings, self.answer())
@@ -88,14 +89,14 @@ pub(crate) fn compare_all(args: &CompareArgs) -> Result<AnyComparison, Failure> 
                 ("--plot", args.plot.is_some(), "draws hops over one another (chta plan --plot draws each mission)"),
             ])?;
             let (loaded, cases) = each(args, compared_travel)?;
-            return Ok(AnyComparison::Travel(loaded, TravelComparison::of(cases)));
+            return Ok(AnyComparison::Travel(loaded, Comparison::of(cases)));
         }
         let (loaded, cases) = each(args, compared)?;
         return Ok(AnyComparison::Chains(loaded, Comparison::of(cases)));
     }
     not_on_mesh::refuse(&[("--prove", args.prove.prove, "bounds the hops along a profile")])?;
     let (inputs, cases) = each(args, compared_over_mesh)?;
-    let comparison = MeshComparison::of(cases);
+    let comparison = Comparison::of(cases);
     match (comparison.other_mesh(), &args.plot) {
         (Some(other), Some(_)) => Err(Failure::message(format!(
             "--plot: found another mesh in {other} than in {}, expected scenarios over one mesh, whose paths are drawn over one another: leave the \
@@ -140,26 +141,26 @@ fn common(args: &CompareArgs) -> CommonArgs {
 }
 
 /// Loads and plans one scenario.
-fn compared(file: &Path, args: &CompareArgs) -> Result<(Loaded, Compared), Failure> {
+fn compared(file: &Path, args: &CompareArgs) -> Result<(Loaded, Compared<Planned>), Failure> {
     let loaded = load_scenario(file, &common(args), Purpose::Compare)?;
     loaded.ends()?;
     let options = PlanOptions { proof: args.prove.proof(), ..PlanOptions::default() };
     let planned = plan(&loaded.case, options, &Progress::new(args.quiet))?;
     output::warn_all(args.quiet, &planned.warnings);
-    Ok((loaded, Compared::of(planned, relative_name(file), &file.display().to_string())))
+    Ok((loaded, Compared::<Planned>::of(planned, relative_name(file), &file.display().to_string())))
 }
 
 /// Loads and plans one scenario that drives.
-fn compared_travel(file: &Path, args: &CompareArgs) -> Result<(Loaded, TravelCompared), Failure> {
+fn compared_travel(file: &Path, args: &CompareArgs) -> Result<(Loaded, Compared<TravelPlanned>), Failure> {
     let loaded = load_scenario(file, &common(args), Purpose::Compare)?;
     loaded.ends()?;
     let planned = travel_plan(&loaded.case, TravelOptions::default(), &Progress::new(args.quiet))?;
     output::warn_all(args.quiet, &planned.warnings);
-    Ok((loaded, TravelCompared::of(planned, relative_name(file), &file.display().to_string())))
+    Ok((loaded, Compared::<TravelPlanned>::of(planned, relative_name(file), &file.display().to_string())))
 }
 
 /// Loads and plans one scenario over a mesh.
-fn compared_over_mesh(file: &Path, args: &CompareArgs) -> Result<(MeshPlanInput, MeshCompared), Failure> {
+fn compared_over_mesh(file: &Path, args: &CompareArgs) -> Result<(MeshPlanInput, Compared<MeshRouted>), Failure> {
     let options = (None, EndOptions::NONE);
     let input = load_mesh_scenario((file, Role::Scenario), &common(args), options, Purpose::Compare, &[])?;
     let input = input.ok_or_else(|| {
@@ -172,6 +173,6 @@ fn compared_over_mesh(file: &Path, args: &CompareArgs) -> Result<(MeshPlanInput,
     let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: None, roadmap: None };
     let routed = mesh_route(&question, &Progress::new(args.quiet)).map_err(|error| Failure::about(&input.mesh, &error))?;
     output::warn_all(args.quiet, &routed.warnings);
-    let one = MeshCompared::of(routed, &input.scenario, relative_name(file), &file.display().to_string());
+    let one = Compared::<MeshRouted>::of(routed, &input.scenario, relative_name(file), &file.display().to_string());
     Ok((input, one))
 }

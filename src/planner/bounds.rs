@@ -100,4 +100,25 @@ impl LeastAmounts {
             .with(Amount::DeltaV, speed_m_s + limits.hop_delta_v_overhead_m_s.unwrap_or(0.0) * SHAVED)
             .with(Amount::Energy, limits.store_energy_j_kg(0.5 * speed_m_s * speed_m_s, 1) * SHAVED)
     }
+
+    /// The bounds for one hop of this horizontal length, whatever it climbs.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{planner::{Amount, LeastAmounts}, world::HopperLimits};
+    /// let limits = HopperLimits { preparation_time_s: Some(3.0), ..HopperLimits::with_speeds(10.0, 10.0) };
+    /// let least = LeastAmounts::new(&limits, 10.0, (10.0, 10.0), 0.0).of_any_hop(5.0);
+    /// // As fast as both speeds allow: 2 * 5 / 20 s.
+    /// assert!((least.of(Amount::MissionTime) - 3.5).abs() < 1e-6 && least.of(Amount::Energy) == 0.0);
+    /// ```
+    pub fn of_any_hop(&self, run_m: f64) -> Amounts {
+        // The chord is no shorter than this, in either speed's bound on the time.
+        let flight_s = self.bounds.as_ref().map_or(0.0, |bounds| bounds.flight_time_s(run_m, 0.0));
+        Amounts::NONE
+            .with(Amount::Hops, 1.0)
+            .with(Amount::FlightTime, flight_s)
+            .with(Amount::MissionTime, flight_s + self.limits.preparation_time_s.unwrap_or(0.0) * SHAVED)
+            .with(Amount::Distance, run_m * SHAVED)
+            .with(Amount::ArcLength, run_m * SHAVED)
+    }
 }

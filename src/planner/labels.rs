@@ -181,6 +181,17 @@ impl Labels {
         self.of_node(node).any(|label| dominates(&self.tracked, self.totals(label), totals))
     }
 
+    /// Whether a label of a node is better in the first amount of the objective alone than a path with one more leg could be; asked first, since
+    /// it is cheap. Where labels are compared by more than the objective it is never certain.
+    #[inline]
+    pub(super) fn node_is_ahead(&self, node: usize, label: u32, leg: &Amounts) -> bool {
+        let (width, first) = (self.tracked.len(), self.tracked.amounts[0]);
+        let known = self.heads[node];
+        self.tracked.compared.is_empty()
+            && known != NONE
+            && self.totals[known as usize * width] < first.join(self.totals[label as usize * width], leg.of(first))
+    }
+
     /// The tracked amounts of a path with one more leg.
     pub(super) fn extended(&self, label: u32, leg: &Amounts, out: &mut Vec<f64>) {
         out.clear();

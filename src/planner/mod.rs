@@ -27,12 +27,14 @@ mod lattice;
 mod nearest_steps;
 mod nodes;
 mod objective;
+mod pair_memo;
 pub mod roadmap;
 mod route_gap;
 mod search;
 mod stances;
 mod surface_hops;
 mod surface_legs;
+mod table_hops;
 mod travel;
 
 pub use amount::{Amount, Amounts};

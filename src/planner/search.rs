@@ -211,11 +211,17 @@ impl<G: LegGraph> LegVisitor for Settled<'_, G> {
     }
 
     fn may_improve(&mut self, node: usize, least: &Amounts) -> bool {
+        if self.labels.node_is_ahead(node, self.label, least) {
+            return false;
+        }
         self.labels.extended(self.label, least, &mut self.scratch.totals);
         !self.labels.node_dominates(node, &self.scratch.totals)
     }
 
     fn visit(&mut self, leg: &Successor) {
+        if self.labels.node_is_ahead(leg.node, self.label, &leg.amounts) {
+            return;
+        }
         self.labels.extended(self.label, &leg.amounts, &mut self.scratch.totals);
         if !self.leads_on(leg.node) {
             return;

@@ -125,7 +125,7 @@ impl<'s> SurfaceHops<'s> {
         [from, to]: [&MapPosition; 2],
         (sight, heading): (LineOfSight, Vector2<f64>),
     ) -> Option<Feasible> {
-        if !self.refused.is_empty() && self.refused.contains(&nodes) {
+        if self.is_refused(nodes) {
             return None;
         }
         let lofts = if self.nodes.may_run_along_edges(self.ground, nodes, [from.at, to.at]) {
@@ -134,6 +134,11 @@ impl<'s> SurfaceHops<'s> {
             self.ground.lofts_by_walk(from, to, sight, heading)
         }?;
         Some(Feasible { sight, heading, lofts })
+    }
+
+    /// Whether a hop is one that its slice does not have.
+    pub(super) fn is_refused(&self, nodes: [SurfaceNode; 2]) -> bool {
+        !self.refused.is_empty() && self.refused.contains(&nodes)
     }
 
     /// The feasible lofts by the slice and the hop test along it, or the limit that leaves none: what the route is flown by. `None` without

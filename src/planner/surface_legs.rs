@@ -8,19 +8,24 @@ use rayon::prelude::*;
 use super::{
     Amount, Amounts, FoundPath, LeastAmounts, LegGraph, LegVisitor, PathStep, SearchedCommands, Successor, SurfaceNode,
     fewest_hops::FewestHops,
+    pair_memo::PairMemo,
     surface_hops::{Feasible, Side, SurfaceHops},
+    table_hops::TableHops,
 };
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
     flight::Uncertainty,
     graph::MapJudge,
-    ground::{DemGround, MapPosition, Surface},
+    ground::{DemGround, MapPosition, Post, Surface},
     progress::{Cancelled, Meter, PairCounter},
-    quantity::MapPoint,
+    quantity::{MapPoint, SlopeInterval},
 };
 
 /// So many hops are computed by all threads: less work than some 50 microseconds is not worth waking them.
 const SHARED_FROM: usize = 64;
+
+/// Rounding errors are far smaller than this share.
+const SHAVED: f64 = 1.0 - 1e-9;
 
 /// What the hops between nodes of a DEM take, for any thread.
 pub(super) struct LegOffers<'a> {
@@ -29,6 +34,19 @@ pub(super) struct LegOffers<'a> {
     /// The choices of a hop, each with what judges its risk.
     commands: Vec<(TakeoffChoice, Option<MapJudge>)>,
     pub(super) least: LeastAmounts,
+    tables: Option<Tables<'a>>,
+}
+
+/// The lofts of pairs of nodes, `None` where no arc is feasible.
+pub(super) type LoftMemo = RefCell<PairMemo<Option<SlopeInterval>>>;
+
+/// The hops between nodes of the lattice, with what those of each offset take at least.
+struct Tables<'a> {
+    hops: &'a TableHops,
+    /// With the time to settle, and without.
+    least: [Vec<Amounts>; 2],
+    /// The node of the lattice for which the machine does not settle.
+    spared: Option<SurfaceNode>,
 }
 
 /// Which hops the machine settles for.
@@ -48,6 +66,15 @@ impl Settling {
         match self {
             Self::BeforeAllBut(start) => from == start,
             Self::AfterAllBut(goal) => to.at == goal,
+            Self::AfterAll => false,
+        }
+    }
+
+    /// The same between nodes of the lattice, of which this one is spared.
+    fn is_spared_between(self, [from, to]: [SurfaceNode; 2], spared: SurfaceNode) -> bool {
+        match self {
+            Self::BeforeAllBut(_) => from == spared,
+            Self::AfterAllBut(_) => to == spared,
             Self::AfterAll => false,
         }
     }
@@ -99,7 +126,27 @@ impl<'a> LegOffers<'a> {
             |choice| errors.map(|(errors, flown_over)| MapJudge::new(flown_over, errors, choice).planned_within(ground.envelope()));
         // Flown draws of every pair would take minutes: the most reliable command of a hop is not searched for.
         let commands = offered.choices(takeoff, false).into_iter().map(|choice| (choice, judge(choice))).collect();
-        Self { surface, settling, commands, least: LeastAmounts::over_dem(ground) }
+        Self { surface, settling, commands, least: LeastAmounts::over_dem(ground), tables: None }
+    }
+
+    /// The same with tables for the hops between nodes of the lattice.
+    pub(super) fn by_tables(self, tables: Option<&'a TableHops>) -> Self {
+        let of_hops = |hops: &'a TableHops| {
+            let spared = match self.settling {
+                Settling::BeforeAllBut(start) => Some(start),
+                Settling::AfterAllBut(goal) => hops.node_at(goal),
+                Settling::AfterAll => None,
+            };
+            let least = |is_spared| hops.runs_m().map(|run_m| self.settled(&self.least.of_any_hop(run_m), is_spared)).collect();
+            Tables { hops, least: [least(false), least(true)], spared }
+        };
+        Self { tables: tables.map(of_hops), ..self }
+    }
+
+    /// What a hop takes at least, with the time to settle.
+    fn settled(&self, least: &Amounts, is_spared: bool) -> Amounts {
+        let settling_s = self.surface.ground.hopper().limits().settling_s().filter(|_| !is_spared).unwrap_or(0.0);
+        least.with(Amount::MissionTime, least.of(Amount::MissionTime) + settling_s * SHAVED)
     }
 
     /// Gives a hop once for each of its distinct commands: the command's number, and what the hop takes with it.
@@ -120,6 +167,9 @@ impl<'a> LegOffers<'a> {
 
     /// Visits every hop that begins at a node, or ends there, whose other end leads on, once for each of its distinct commands.
     ///
+    /// # Arguments
+    /// `memo`: what is known of pairs that no table has, and is kept of them.
+    ///
     /// # Returns
     /// How many pairs of nodes were tested.
     ///
@@ -130,51 +180,127 @@ impl<'a> LegOffers<'a> {
         (node, side): (SurfaceNode, Side),
         leads_on: &dyn Fn(SurfaceNode) -> bool,
         visitor: &mut dyn LegVisitor,
+        memo: Option<&LoftMemo>,
         counter: &mut PairCounter<'_>,
     ) -> Result<u64, Cancelled> {
         let Some(at) = self.surface.position(node) else { return Ok(0) };
-        let candidates = self.candidates((node, &at, side), leads_on, visitor);
-        for _ in &candidates {
-            counter.pair()?;
-        }
-        let hop = |other: &Candidate| {
-            let (nodes, ends) = side.in_order((node, &at), (other.node, &other.at));
-            self.surface.between(nodes, ends, other.sight)
+        let from = (node, &at, side);
+        let cell = self.surface.nodes.of_lattice(node);
+        let (mut tested, candidates) = match self.tables.as_ref().zip(cell) {
+            Some((tables, cell)) => {
+                let tested = self.visit_by_tables((node, cell, side), (tables, leads_on), visitor, counter)?;
+                let beside = self.surface.nodes.places_about(at.at, self.surface.reach_m(&at, side));
+                (tested, self.candidates(from, beside, leads_on, visitor))
+            }
+            None => (0, self.candidates(from, self.surface.about(&at, side), leads_on, visitor)),
         };
-        let hops: Vec<Option<Feasible>> = if candidates.len() < SHARED_FROM {
-            candidates.iter().map(hop).collect()
-        } else {
-            candidates.par_iter().map(hop).collect()
-        };
-        for (candidate, hop) in candidates.iter().zip(&hops) {
+        for (candidate, hop) in candidates.iter().zip(self.hops_of(from, &candidates, memo, (&mut tested, counter))?) {
             if let Some(hop) = hop {
                 let ([from, _], [_, to]) = side.in_order((node, &at), (candidate.node, &candidate.at));
-                self.each(from, to, hop, |command, amounts| {
+                self.each(from, to, &hop, |command, amounts| {
                     visitor.visit(&Successor { node: candidate.node.index(), command, amounts });
                 });
             }
         }
-        Ok(candidates.len() as u64)
+        Ok(tested)
     }
 
-    /// The nodes to or from which a visitor may want a leg.
+    /// The hops to or from candidates.
+    fn hops_of(
+        &self,
+        (node, at, side): (SurfaceNode, &MapPosition, Side),
+        candidates: &[Candidate],
+        memo: Option<&LoftMemo>,
+        (tested, counter): (&mut u64, &mut PairCounter<'_>),
+    ) -> Result<Vec<Option<Feasible>>, Cancelled> {
+        let in_order = |other: &'_ Candidate| side.in_order((node, at), (other.node, &other.at)).0;
+        let known = |other: &Candidate| memo.and_then(|memo| memo.borrow().of(in_order(other)));
+        let known: Vec<Option<Option<SlopeInterval>>> = candidates.iter().map(known).collect();
+        let unknown = known.iter().filter(|known| known.is_none()).count();
+        for _ in 0..unknown {
+            counter.pair()?;
+        }
+        *tested += unknown as u64;
+        let hop = |(other, known): (&Candidate, &Option<Option<SlopeInterval>>)| {
+            let (sight, heading) = other.sight;
+            match known {
+                Some(lofts) => lofts.map(|lofts| Feasible { sight, heading, lofts }),
+                None => {
+                    let (nodes, ends) = side.in_order((node, at), (other.node, &other.at));
+                    self.surface.between(nodes, ends, other.sight)
+                }
+            }
+        };
+        let hops: Vec<Option<Feasible>> = if unknown < SHARED_FROM {
+            candidates.iter().zip(&known).map(hop).collect()
+        } else {
+            candidates.par_iter().zip(&known).map(hop).collect()
+        };
+        if let Some(memo) = memo {
+            let mut memo = memo.borrow_mut();
+            for ((other, hop), _) in candidates.iter().zip(&hops).zip(&known).filter(|(_, known)| known.is_none()) {
+                memo.keep(in_order(other), hop.map(|hop| hop.lofts));
+            }
+        }
+        Ok(hops)
+    }
+
+    /// Visits the hops between a node of the lattice and the others of it.
+    ///
+    /// # Returns
+    /// How many pairs of nodes were tested.
+    fn visit_by_tables(
+        &self,
+        (node, cell, side): (SurfaceNode, (usize, usize), Side),
+        (tables, leads_on): (&Tables<'_>, &dyn Fn(SurfaceNode) -> bool),
+        visitor: &mut dyn LegVisitor,
+        counter: &mut PairCounter<'_>,
+    ) -> Result<u64, Cancelled> {
+        let post = Post { row: cell.1, col: cell.0 };
+        let mut tested = 0;
+        for (offset, there) in tables.hops.about(cell, side) {
+            let other = tables.hops.number(there);
+            let (nodes, from) = match side {
+                Side::Start => ([node, other], post),
+                Side::Goal => ([other, node], there),
+            };
+            let is_spared = tables.spared.is_some_and(|spared| self.settling.is_spared_between(nodes, spared));
+            if !leads_on(other) || !visitor.wants(other.index(), &tables.least[usize::from(is_spared)][offset]) {
+                continue;
+            }
+            tested += 1;
+            counter.pair()?;
+            if let Some(hop) = tables.hops.hop(from, offset).filter(|_| !self.surface.is_refused(nodes))
+                && let Some(to) = self.surface.position(nodes[1])
+            {
+                self.each(nodes[0], &to, &hop, |command, amounts| {
+                    visitor.visit(&Successor { node: other.index(), command, amounts });
+                });
+            }
+        }
+        Ok(tested)
+    }
+
+    /// The nodes to or from which a visitor may want a leg, of some.
     fn candidates(
         &self,
         (node, at, side): (SurfaceNode, &MapPosition, Side),
+        others: impl Iterator<Item = SurfaceNode>,
         leads_on: &dyn Fn(SurfaceNode) -> bool,
         visitor: &mut dyn LegVisitor,
     ) -> Vec<Candidate> {
         const ONE_HOP: Amounts = Amounts::NONE.with(Amount::Hops, 1.0);
         let mut candidates = Vec::new();
-        for other in self.surface.about(at, side).filter(|other| *other != node && leads_on(*other)) {
+        for other in others.filter(|other| *other != node && leads_on(*other)) {
             // By the hops alone, which needs no ground.
             if !visitor.may_improve(other.index(), &ONE_HOP) {
                 continue;
             }
             let Some(there) = self.surface.position(other) else { continue };
-            let (_, [from, to]) = side.in_order((node, at), (other, &there));
+            let ([first, _], [from, to]) = side.in_order((node, at), (other, &there));
             let Some(sight) = self.surface.sight(from, to) else { continue };
-            if visitor.wants(other.index(), &self.least.of_hop(sight.0)) {
+            let least = self.settled(&self.least.of_hop(sight.0), self.settling.is_spared(first, to));
+            if visitor.wants(other.index(), &least) {
                 candidates.push(Candidate { node: other, at: there, sight });
             }
         }
@@ -245,7 +371,7 @@ impl LegGraph for SurfaceLegs<'_> {
         self.counter.borrow().check()?;
         let leads_on = |next: SurfaceNode| self.counted == Counted::All || self.hops_left.of(next).is_some();
         let of_node = (SurfaceNode::of_index(node), Side::Start);
-        self.count(self.offers.visit(of_node, &leads_on, visitor, &mut self.counter.borrow_mut())?);
+        self.count(self.offers.visit(of_node, &leads_on, visitor, None, &mut self.counter.borrow_mut())?);
         Ok(())
     }
 

@@ -46,10 +46,40 @@ pub struct ArenaAnswer {
     pub without_jumps_s: Option<f64>,
     /// The flight of every jump; null where jumps are rules.
     pub flight: Option<ArenaFlightRecord>,
+    /// All planners over the same boxes; absent if that was not asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compared: Option<Vec<ArenaComparedRecord>>,
     /// The path from the start to the goal; empty without one.
     pub path: Vec<ArenaPointRecord>,
     /// The time of the path of RRT* as its nodes grow; empty for other planners.
     pub history: Vec<ArenaHistoryRecord>,
+}
+
+/// What one of all planners finds over the same boxes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ArenaComparedRecord {
+    /// `grid`, `any-angle` or `rrt-star`.
+    pub planner: String,
+    /// How the grid prices jumps and drops, `R1` or `R0`; null for other planners.
+    pub reading: Option<String>,
+    /// Why this planner does not plan in this arena; null if it does.
+    pub refused: Option<String>,
+    /// The time of its path, s; null without one.
+    pub path_time_s: Option<f64>,
+    /// The jumps of its path; null without one.
+    pub jumps: Option<u64>,
+    /// Its length along the floor, m; null without a path.
+    pub length_m: Option<f64>,
+    /// The time of its path without jumps, s; null without such a path, or if jumps were not allowed anyway.
+    pub without_jumps_s: Option<f64>,
+    /// What jumping saves, s; null where one of both paths is missing.
+    pub saved_s: Option<f64>,
+    /// A time that no path beats under this planner's prices, s; null where it is proved that there is no path.
+    pub lower_bound_s: Option<f64>,
+    /// Whether the lower bound is the exact optimum over the boxes as drawn; else it is below what can be reached.
+    pub lower_bound_is_exact: bool,
+    /// How far the time of the path is above the bound, as a share of the bound; null without a path.
+    pub gap_share: Option<f64>,
 }
 
 /// What the flight of a jump reaches.
@@ -132,6 +162,7 @@ pub fn arena_text(answer: &ArenaAnswer) -> String {
         sheet.line(format_args!("length {length_m:.3} m, turning {turning_deg:.1} deg{energy}"));
     }
     flight(&mut sheet, answer);
+    compared(&mut sheet, answer);
     for point in &answer.path {
         let (x, y, z) = (place(point.x_m), place(point.y_m), place(point.z_m));
         sheet.line(format_args!("  {:<6} {x}, {y}, {z} m", point.reached_by.as_deref().unwrap_or("start")));
@@ -153,6 +184,28 @@ fn flight(sheet: &mut Sheet, answer: &ArenaAnswer) {
     }
 }
 
+/// All planners side by side.
+fn compared(sheet: &mut Sheet, answer: &ArenaAnswer) {
+    let Some(rows) = &answer.compared else { return };
+    sheet.line(format_args!(
+        "  {:<12}{:>12}{:>7}{:>14}{:>10}{:>12}",
+        "planner", "time, s", "jumps", "no jumps, s", "saves, s", "above, %"
+    ));
+    let seconds = |time_s: Option<f64>| time_s.map_or_else(|| "-".to_owned(), |time_s| format!("{time_s:.4}"));
+    for row in rows {
+        let name = row.reading.as_ref().map_or_else(|| row.planner.clone(), |reading| format!("{} {reading}", row.planner));
+        if let Some(refused) = &row.refused {
+            sheet.line(format_args!("  {name:<12}  refused: {refused}"));
+            continue;
+        }
+        let (time, without, saved) = (seconds(row.path_time_s), seconds(row.without_jumps_s), seconds(row.saved_s));
+        let jumps = row.jumps.map_or_else(|| "-".to_owned(), |jumps| jumps.to_string());
+        let above = row.gap_share.map_or_else(|| "-".to_owned(), |gap| format!("{:.2}", 100.0 * gap));
+        let exact = if row.gap_share.is_some() && !row.lower_bound_is_exact { " a bound" } else { "" };
+        sheet.line(format_args!("  {name:<12}{time:>12}{jumps:>7}{without:>14}{saved:>10}{above:>12}{exact}"));
+    }
+}
+
 fn no_path(sheet: &mut Sheet, answer: &ArenaAnswer, by: &str) {
     let with = if answer.jumps_allowed { "" } else { " without jumps" };
     if answer.proved_unreachable {
@@ -165,6 +218,7 @@ fn no_path(sheet: &mut Sheet, answer: &ArenaAnswer, by: &str) {
         }
     }
     flight(sheet, answer);
+    compared(sheet, answer);
     for key in &answer.stopped_by {
         sheet.line(format_args!("stopped by {key}: without this limit there is a path"));
     }

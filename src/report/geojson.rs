@@ -6,7 +6,10 @@
 
 use geojson::{Feature, FeatureCollection, Geometry, GeometryValue, JsonObject, Position};
 
-use super::path_record::{HopRecord, tenth_digit};
+use super::{
+    TravelLegRecord,
+    path_record::{HopRecord, tenth_digit},
+};
 use crate::{
     path::{Hop, HopPath},
     quantity::MapPoint,
@@ -35,6 +38,48 @@ pub fn paths_geojson(paths: &[&HopPath], gravity_m_s2: f64, projection: Option<&
     Some(document(features, projection))
 }
 
+/// A mission over a map as a feature collection: a line over the waypoints of each drive leg and an arc for each hop, each with all its columns, and a
+/// point for each contact of a hop. `hops`: those of the legs, in their order. `None` if they are not on a map.
+///
+/// Coordinates as in [`path_geojson`].
+pub fn mission_geojson(
+    legs: &[TravelLegRecord],
+    hops: &[Hop],
+    gravity_m_s2: f64,
+    projection: Option<&MapProjection>,
+) -> Option<String> {
+    let (mut features, mut hops) = (Vec::new(), hops.iter());
+    for leg in legs {
+        let serde_json::Value::Object(mut properties) = serde_json::to_value(leg).ok()? else { return None };
+        // They are the geometry.
+        ["takeoff_m", "landing_m", "waypoints_m", "steepest_at_m"].into_iter().for_each(|key| drop(properties.remove(key)));
+        let properties = flat(properties);
+        match leg {
+            TravelLegRecord::Drive(drive) => {
+                let coordinates = drive.waypoints_m.iter().map(|place| Position::from(*place)).collect();
+                features.push(feature(GeometryValue::LineString { coordinates }, properties));
+            }
+            TravelLegRecord::Hop(leg) => {
+                let hop = hops.next()?;
+                let (takeoff, landing) = hop.map_ends()?;
+                let coordinates = arc_positions(hop, (takeoff, landing), gravity_m_s2);
+                features.push(feature(GeometryValue::LineString { coordinates }, properties));
+                features.push(contact(leg.hop.hop - 1, takeoff, hop.takeoff.point_m.z, projection));
+                features.push(contact(leg.hop.hop, landing, hop.landing.point_m.z, projection));
+            }
+        }
+    }
+    Some(document(features, projection))
+}
+
+/// Properties without an object, which a GIS shows as text: margins are under the names of the columns.
+fn flat(mut properties: JsonObject) -> JsonObject {
+    if let Some(serde_json::Value::Object(margins)) = properties.remove("margins") {
+        properties.extend(margins.into_iter().map(|(key, value)| (format!("margin_{key}"), value)));
+    }
+    properties
+}
+
 /// Arcs and contacts of a path; `None` if it is not on a map.
 fn path_features(
     path: &HopPath,
@@ -46,11 +91,8 @@ fn path_features(
     let mut features = Vec::new();
     for (hop, row) in path.hops.iter().zip(&rows) {
         let (takeoff, landing) = hop.map_ends()?;
-        let serde_json::Value::Object(mut properties) = serde_json::to_value(row).ok()? else { return None };
-        // Flat, under the names of the columns: a GIS shows an object as text.
-        if let Some(serde_json::Value::Object(margins)) = properties.remove("margins") {
-            properties.extend(margins.into_iter().map(|(key, value)| (format!("margin_{key}"), value)));
-        }
+        let serde_json::Value::Object(properties) = serde_json::to_value(row).ok()? else { return None };
+        let mut properties = flat(properties);
         properties.insert("kind".to_owned(), "hop".into());
         features.push(feature(
             GeometryValue::LineString { coordinates: arc_positions(hop, (takeoff, landing), gravity_m_s2) },

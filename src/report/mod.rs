@@ -47,7 +47,7 @@ mod travel_simulate_answer;
 mod travel_text;
 
 pub use advice::AdviceRecord;
-pub use arena_answer::{ArenaAnswer, ArenaFlightRecord, ArenaHistoryRecord, ArenaPointRecord, arena_text};
+pub use arena_answer::{ArenaAnswer, ArenaComparedRecord, ArenaFlightRecord, ArenaHistoryRecord, ArenaPointRecord, arena_text};
 pub use check_answer::{
     CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, JourneyEnd, MissRecord, PairsAnswer, verdict_of,
 };
@@ -56,7 +56,7 @@ pub use derating_record::DeratingRecord;
 pub use document::{CrsRecord, Document, DocumentKind, DocumentProblem, InputFile};
 pub use experiment_answer::{ConeWidthAnswer, ConeWidthRecord, DriftRecord, ExperimentAnswer, WorstDriftAnswer};
 pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
-pub use geojson::{path_geojson, paths_geojson, slice_geojson};
+pub use geojson::{mission_geojson, path_geojson, paths_geojson, slice_geojson};
 pub use hop_answer::{
     BestRecord, BindingRecord, GreatestReachRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord, WindowEndRecord,
     WindowRecord,

@@ -5,7 +5,7 @@ use crate::{
         Arena, ArenaPath, CheckedPath, GrownTree, PathFault, Reading, Refusal, RrtStarOptions, any_angle_path, check_path,
         grid_path, grow_rrt_star, lower_bound,
     },
-    report::{ArenaAnswer, ArenaFlightRecord, ArenaHistoryRecord, ArenaPointRecord},
+    report::{ArenaAnswer, ArenaComparedRecord, ArenaFlightRecord, ArenaHistoryRecord, ArenaPointRecord},
 };
 
 /// A planner, with what it alone needs.
@@ -81,10 +81,64 @@ pub fn plan_in_arena(arena: &Arena, planner: ArenaPlanner, may_jump: bool) -> Re
         energy_j: checked.filter(|_| arena.jumper().has_energy()).map(|CheckedPath { energy_j, .. }| energy_j),
         without_jumps_s: checked_without.map(|checked| checked.time_s),
         flight: flight(arena),
+        compared: None,
         path: path.as_ref().map(records).unwrap_or_default(),
         history: tree.as_ref().map(history).unwrap_or_default(),
     };
     Ok(ArenaPlanned { answer, path, without_jumps, tree, warnings: arena.warnings() })
+}
+
+/// Puts one arena through all planners, each with jumps and without; a planner that does not plan in this arena has a row with its reason.
+///
+/// # Errors
+/// [`ArenaError::Defect`].
+pub fn compare_planners(arena: &Arena, options: RrtStarOptions, may_jump: bool) -> Result<Vec<ArenaComparedRecord>, ArenaError> {
+    let [r1, r0] = [Reading::R1, Reading::R0].map(ArenaPlanner::Grid);
+    let planners = [ArenaPlanner::AnyAngle, r1, r0, ArenaPlanner::RrtStar(options)];
+    planners
+        .into_iter()
+        .map(|planner| match plan_in_arena(arena, planner, may_jump) {
+            Ok(planned) => Ok(ArenaComparedRecord::of(&planned.answer)),
+            Err(ArenaError::Refused(refusal)) => Ok(ArenaComparedRecord::refused(planner, &refusal)),
+            Err(defect @ ArenaError::Defect(_)) => Err(defect),
+        })
+        .collect()
+}
+
+impl ArenaComparedRecord {
+    fn of(answer: &ArenaAnswer) -> Self {
+        let saved_s = answer.without_jumps_s.zip(answer.path_time_s).map(|(without_s, time_s)| without_s - time_s);
+        Self {
+            planner: answer.planner.clone(),
+            reading: answer.reading.clone(),
+            refused: None,
+            path_time_s: answer.path_time_s,
+            jumps: answer.jumps,
+            length_m: answer.length_m,
+            without_jumps_s: answer.without_jumps_s,
+            saved_s,
+            lower_bound_s: answer.lower_bound_s,
+            lower_bound_is_exact: answer.lower_bound_is_exact,
+            gap_share: answer.gap_share,
+        }
+    }
+
+    fn refused(planner: ArenaPlanner, refusal: &Refusal) -> Self {
+        let reading = if let ArenaPlanner::Grid(reading) = planner { Some(reading.name().to_owned()) } else { None };
+        Self {
+            planner: planner.name().to_owned(),
+            reading,
+            refused: Some(refusal.to_string()),
+            path_time_s: None,
+            jumps: None,
+            length_m: None,
+            without_jumps_s: None,
+            saved_s: None,
+            lower_bound_s: None,
+            lower_bound_is_exact: false,
+            gap_share: None,
+        }
+    }
 }
 
 impl ArenaPlanner {

@@ -1,23 +1,14 @@
 //! Several scenarios side by side.
 
-use super::{Case, PlanError, PlanOptions, Planned, Proof, plan};
+use super::{Case, Compared, Comparison, PlanError, PlanOptions, Planned, Proof, plan};
 #[cfg(feature = "plot")]
 use crate::figure::{Caption, CompareFigure, ComparedScenario, FigureError, Flight, Picture, draw_compare};
 use crate::{
     progress::Progress,
-    report::{CompareAnswer, CompareRow, MarginsRecord, TotalsRecord},
+    report::{CompareRow, MarginsRecord, TotalsRecord},
 };
 
-/// One of several scenarios, with its plan.
-#[derive(Clone, Debug)]
-pub struct Compared {
-    /// The plan.
-    pub planned: Planned,
-    /// Its row of the table.
-    pub row: CompareRow,
-}
-
-impl Compared {
+impl Compared<Planned> {
     /// A plan and the file of its scenario; `untitled` is the name of a scenario without a title.
     pub fn of(planned: Planned, file: String, untitled: &str) -> Self {
         let (check, path) = (&planned.answer.check, planned.path.as_ref());
@@ -40,25 +31,7 @@ impl Compared {
 
     /// The warnings about the input and the path, each with the name of the file.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
-        let all = self.planned.case.warnings_with(self.planned.warnings.iter().cloned());
-        all.into_iter().map(|warning| format!("{}: {warning}", self.row.file))
-    }
-}
-
-/// Several scenarios with their plans.
-#[derive(Clone, Debug)]
-pub struct Comparison {
-    /// Those with an answer, in the order given.
-    pub compared: Vec<Compared>,
-    /// The answer as plain data, with a row for every case.
-    pub answer: CompareAnswer,
-}
-
-impl Comparison {
-    /// The answers side by side; a case without one has its row alone ([`CompareRow::failed`]).
-    pub fn of(cases: Vec<Result<Compared, CompareRow>>) -> Self {
-        let rows = cases.iter().map(|case| case.as_ref().map_or_else(Clone::clone, |one| one.row.clone())).collect();
-        Self { compared: cases.into_iter().flatten().collect(), answer: CompareAnswer { compared: rows } }
+        self.of_file(self.planned.case.warnings_with(self.planned.warnings.iter().cloned()))
     }
 }
 
@@ -66,10 +39,10 @@ impl Comparison {
 ///
 /// # Errors
 /// [`PlanError`] if it was cancelled.
-pub fn compare(cases: &[(&str, &Case)], proof: Option<Proof>, progress: &dyn Progress) -> Result<Comparison, PlanError> {
+pub fn compare(cases: &[(&str, &Case)], proof: Option<Proof>, progress: &dyn Progress) -> Result<Comparison<Planned>, PlanError> {
     let options = PlanOptions { proof, ..PlanOptions::default() };
     let compared = |&(file, case): &(&str, &Case)| match plan(case, options, progress) {
-        Ok(planned) => Ok(Ok(Compared::of(planned, file.to_owned(), file))),
+        Ok(planned) => Ok(Ok(Compared::<Planned>::of(planned, file.to_owned(), file))),
         Err(error) if error.is_cancelled() => Err(error),
         Err(error) => {
             let name = case.scenario.title.clone().unwrap_or_else(|| file.to_owned());
@@ -80,13 +53,13 @@ pub fn compare(cases: &[(&str, &Case)], proof: Option<Proof>, progress: &dyn Pro
 }
 
 #[cfg(feature = "plot")]
-impl Comparison {
+impl Comparison<Planned> {
     /// The picture with all paths overlaid.
     ///
     /// # Errors
     /// [`FigureError`].
     pub fn picture(&self) -> Result<Picture, FigureError> {
-        let words = |one: &Compared| {
+        let words = |one: &Compared<Planned>| {
             let hops = one.row.hops.map(|hops| format!(", {hops} hop{}", if hops == 1 { "" } else { "s" })).unwrap_or_default();
             let beside = one.planned.path.iter().flat_map(|path| &path.hops).any(crate::path::Hop::is_beside_line);
             let drawn = if beside { " beside the line, drawn projected on it" } else { "" };
@@ -96,13 +69,13 @@ impl Comparison {
         let failed = failed.map(|row| format!("{}: {}", row.name, row.format_verdict()));
         let line = self.compared.iter().map(words).chain(failed).collect::<Vec<_>>().join("; ");
         let names: Vec<_> = self.compared.iter().map(|one| one.row.name.as_str()).collect();
-        let scenarios = self.compared.iter().map(Compared::drawn).collect();
+        let scenarios = self.compared.iter().map(Compared::<Planned>::drawn).collect();
         draw_compare(&CompareFigure { caption: Caption::new(names.join(" and "), line), scenarios })
     }
 }
 
 #[cfg(feature = "plot")]
-impl Compared {
+impl Compared<Planned> {
     /// The scenario as the picture shows it.
     fn drawn(&self) -> ComparedScenario {
         let (start, goal) = self.planned.ends;

@@ -1,23 +1,14 @@
 //! Several scenarios over one mesh side by side: the paths of weak and strong constraints.
 
-use super::MeshRouted;
+use super::{Compared, Comparison, MeshRouted};
 #[cfg(feature = "plot")]
 use crate::figure::{Caption, FigureError, MeshRouteFigure, MeshRouteLine, Picture, SeenFrom, draw_mesh_route};
 use crate::{
-    report::{CompareAnswer, CompareRow, MarginsRecord, TotalsRecord},
+    report::{CompareRow, MarginsRecord, TotalsRecord},
     scenario::Scenario,
 };
 
-/// One of several scenarios over a mesh, with its plan.
-#[derive(Clone, Debug)]
-pub struct MeshCompared {
-    /// The plan.
-    pub routed: MeshRouted,
-    /// Its row of the table.
-    pub row: CompareRow,
-}
-
-impl MeshCompared {
+impl Compared<MeshRouted> {
     /// A plan and the file of its scenario; `untitled` is the name of a scenario without a title.
     pub fn of(routed: MeshRouted, scenario: &Scenario, file: String, untitled: &str) -> Self {
         let (answer, path) = (&routed.answer, routed.path.as_ref());
@@ -35,37 +26,22 @@ impl MeshCompared {
             margins: path.and_then(MarginsRecord::of),
             error: None,
         };
-        Self { routed, row }
+        Self { planned: routed, row }
     }
 
     /// The warnings about the plan, each with the name of the file.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
-        self.routed.warnings.iter().map(|warning| format!("{}: {warning}", self.row.file))
+        self.of_file(self.planned.warnings.iter().cloned())
     }
 }
 
-/// Several scenarios over one mesh with their plans.
-#[derive(Clone, Debug)]
-pub struct MeshComparison {
-    /// Those with an answer, in the order given.
-    pub compared: Vec<MeshCompared>,
-    /// The answer as plain data, with a row for every scenario.
-    pub answer: CompareAnswer,
-}
-
-impl MeshComparison {
-    /// The answers side by side; a scenario without one has its row alone ([`CompareRow::failed`]).
-    pub fn of(cases: Vec<Result<MeshCompared, CompareRow>>) -> Self {
-        let rows = cases.iter().map(|case| case.as_ref().map_or_else(Clone::clone, |one| one.row.clone())).collect();
-        Self { compared: cases.into_iter().flatten().collect(), answer: CompareAnswer { compared: rows } }
-    }
-
+impl Comparison<MeshRouted> {
     /// The first file whose mesh is another one than that of the first scenario: their paths are not drawn over one another.
     pub fn other_mesh(&self) -> Option<&str> {
         let (first, others) = self.compared.split_first()?;
-        let own = first.routed.ground.tree().mesh();
-        let is_other = |one: &&MeshCompared| {
-            let mesh = one.routed.ground.tree().mesh();
+        let own = first.planned.ground.tree().mesh();
+        let is_other = |one: &&Compared<MeshRouted>| {
+            let mesh = one.planned.ground.tree().mesh();
             mesh.vertices() != own.vertices() || mesh.indices() != own.indices()
         };
         others.iter().find(is_other).map(|other| other.row.file.as_str())
@@ -86,21 +62,21 @@ impl MeshComparison {
         };
         let line = self.answer.compared.iter().map(words).collect::<Vec<_>>().join("; ");
         let mut lines = vec![line];
-        let end = |one: &MeshCompared| (one.row.start_m, one.row.goal_m);
+        let end = |one: &Compared<MeshRouted>| (one.row.start_m, one.row.goal_m);
         if self.compared.iter().any(|one| end(one) != end(first)) {
             lines.push(format!("start and goal are those of {}; other paths have their own", first.row.name));
         }
         let names: Vec<_> = self.compared.iter().map(|one| one.row.name.as_str()).collect();
-        let [start, goal] =
-            [first.routed.grown.ends.0, first.routed.grown.ends.1].map(|node| first.routed.grown.roadmap.contact(node).point_m());
+        let [start, goal] = [first.planned.grown.ends.0, first.planned.grown.ends.1]
+            .map(|node| first.planned.grown.roadmap.contact(node).point_m());
         let route = |one| {
-            let MeshCompared { routed, row }: &MeshCompared = one;
+            let Compared { planned: routed, row }: &Compared<MeshRouted> = one;
             let gravity_m_s2 = routed.ground.envelope().gravity_m_s2();
             routed.path.as_ref().map(|path| MeshRouteLine { name: &row.name, path, gravity_m_s2 })
         };
         draw_mesh_route(&MeshRouteFigure {
             caption: Caption { title: names.join(" and "), lines },
-            mesh: first.routed.ground.tree().mesh(),
+            mesh: first.planned.ground.tree().mesh(),
             seen_from,
             cut_z_m: None,
             start,

@@ -24,6 +24,7 @@ mod captions;
 mod case;
 mod check;
 mod compare;
+mod compared;
 mod dem_ground;
 mod experiment;
 pub mod fan;
@@ -82,12 +83,13 @@ mod value_scan;
 mod variation;
 
 pub use alike::ask_the_same;
-pub use arena::{ArenaError, ArenaPlanned, ArenaPlanner, plan_in_arena};
+pub use arena::{ArenaError, ArenaPlanned, ArenaPlanner, compare_planners, plan_in_arena};
 #[cfg(feature = "plot")]
 pub use captions::{conditions, wheels};
 pub use case::{Case, CaseError, Commands};
 pub use check::{CheckError, Checked, CheckedPair, check, check_pairs};
-pub use compare::{Compared, Comparison, compare};
+pub use compare::compare;
+pub use compared::{Compared, Comparison};
 pub use experiment::{ConeProblem, ExperimentAnswer, ExperimentError, experiment};
 pub use footprint::coarse_dem_warning;
 pub use free_route::FreeRouteError;
@@ -98,7 +100,6 @@ pub use journey::{JourneyError, Proof};
 pub use legs_route::{LegsRouteError, LegsRouteQuestion, LegsRouted, legs_route};
 pub use legs_trials::{LegsSimulated, LegsTrialsError, simulate_legs};
 pub use measured::with_measured_errors;
-pub use mesh_compare::{MeshCompared, MeshComparison};
 pub use mesh_hop::{MeshHopError, MeshHopQuestion, MeshHopped, mesh_hop};
 pub use mesh_reach::{MeshReachQuestion, MeshReached, mesh_reach};
 pub use mesh_read_back::{MeshChecked, MeshReadBackError, MeshResultPath, check_over_mesh};
@@ -122,7 +123,7 @@ pub use trade::{CellError, Trade, TradeError, TradedCells, Varied, verdict};
 pub use traded::{Traded, trade};
 pub use trajectory::TrajectoryError;
 pub use travel::{
-    DriveDefect, ReachedBy, TravelCompared, TravelComparison, TravelMap, TravelOptions, TravelPlanned, TravelSimulated, travel_map,
-    travel_plan, travel_simulate,
+    DriveDefect, ReachedBy, TravelMap, TravelOptions, TravelPlanned, TravelSimulated, travel_map, travel_plan, travel_simulate,
+    travel_size,
 };
 pub use variation::Variation;

@@ -37,6 +37,43 @@ fn the_answer_says_what_it_is_and_how_far_from_the_bound() {
     assert!(tree.starts_with("found by RRT* with 400 nodes: ") && !tree.contains("optimal"), "{tree}");
 }
 
+/// The table has what each planner answers by itself, over the same random boxes.
+#[test]
+fn all_planners_over_the_same_boxes_in_a_table() {
+    let document = |more: &[&str]| {
+        let words = ["arena", "data/arenas/sumo_2.toml", "--random", "15", "--seed", "3", "--quiet", "--format", "json"];
+        let (status, stdout, stderr) = chta(root(), &[&words[..], more].concat());
+        assert_eq!((status, stderr.as_str()), (0, ""), "{more:?}");
+        serde_json::from_str::<serde_json::Value>(&stdout).unwrap()
+    };
+    let all = document(&["--compare", "--nodes", "400"]);
+    let rows = all["compared"].as_array().unwrap();
+    let alone: [&[&str]; 4] = [
+        &["--planner", "any-angle"],
+        &["--planner", "grid", "--reading", "R1"],
+        &["--planner", "grid", "--reading", "R0"],
+        &["--planner", "rrt-star", "--nodes", "400"],
+    ];
+    assert_eq!(rows.len(), alone.len());
+    let mut paths = 0;
+    for (row, words) in rows.iter().zip(alone) {
+        let own = document(words);
+        for key in ["planner", "reading", "path_time_s", "jumps", "length_m", "without_jumps_s", "lower_bound_s", "gap_share"] {
+            assert_eq!(row[key], own[key], "{words:?}: {key}");
+        }
+        if let (Some(time_s), Some(without_s)) = (row["path_time_s"].as_f64(), row["without_jumps_s"].as_f64()) {
+            assert_eq!(row["saved_s"].as_f64(), Some(without_s - time_s));
+            paths += 1;
+        }
+    }
+    assert!(paths >= 3, "{all}");
+    // A planner that does not plan there says why, and the others do.
+    let flying =
+        ["--set", "flight.takeoff_speed_m_s=4.2", "--set", "flight.takeoff_angle_deg=75", "--planner", "grid", "--compare"];
+    let flying = document(&flying);
+    assert!(flying["compared"][0]["refused"].is_string() && flying["compared"][1]["refused"].is_null(), "{flying}");
+}
+
 #[test]
 fn the_document_has_path_bound_and_gap_and_is_the_same_each_time() {
     let desk = desk();

@@ -1022,7 +1022,8 @@ const STANCE: [Trial; 14] = [
 
 /// Errors of execution for trials.
 /// Without the run time on standard error, which is another one each time.
-const ARENA: [Trial; 12] = [
+const ARENA: [Trial; 13] = [
+    ("--compare", &["arena", "arena.toml", "--quiet"], &["arena", "arena.toml", "--quiet", "--compare"]),
     ("--planner", &["arena", "arena.toml", "--quiet"], &["arena", "arena.toml", "--quiet", "--planner", "grid"]),
     (
         "--reading",

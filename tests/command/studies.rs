@@ -278,7 +278,8 @@ fn compare_answers_as_the_command() {
     let comparison = compare(&[(&files[0], &simple), (&files[1], &wall)], None, &()).unwrap();
     let command = of_command("compare", "simple", &[], &[&files[1]]);
     assert_eq!(serde_json::to_value(&comparison.answer).unwrap()["compared"], command["compared"]);
-    let warnings: Vec<String> = comparison.compared.iter().flat_map(chta::study::Compared::warnings).collect();
+    let warnings: Vec<String> =
+        comparison.compared.iter().flat_map(chta::study::Compared::<chta::study::Planned>::warnings).collect();
     assert_eq!(serde_json::to_value(warnings).unwrap(), command["warnings"]);
     assert!(comparison.picture().unwrap().to_svg().unwrap().starts_with("<svg"));
 }

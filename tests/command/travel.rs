@@ -85,6 +85,56 @@ fn wheels_on_the_floor_and_one_hop_over_the_step() {
     assert!(number(&eight["totals"]["mission_time_s"]) >= time_s - 1e-9);
 }
 
+/// Lines of drive legs, arcs of hops and their contacts, each with the numbers of its leg.
+#[test]
+fn a_mission_is_written_as_geojson() {
+    let desk = desk();
+    let ran = desk.run(&["plan", "step.toml", "--quiet", "--format", "json", "--geojson", "mission.geojson"]);
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    let answer: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let written: Value = serde_json::from_str(&desk.read("mission.geojson")).unwrap();
+    let features = written["features"].as_array().unwrap();
+    let kinds: Vec<&str> = features.iter().map(|feature| feature["properties"]["kind"].as_str().unwrap()).collect();
+    assert_eq!(kinds, ["drive", "hop", "contact", "contact", "drive"], "{written}");
+    for (feature, leg) in [(0, 0), (1, 1), (4, 2)] {
+        let (feature, leg) = (&features[feature], &answer["path"][leg]);
+        assert_eq!(feature["properties"]["time_s"], leg["time_s"]);
+        assert!(feature["properties"].as_object().unwrap().values().all(|value| !value.is_object() && !value.is_array()));
+        let line = feature["geometry"]["coordinates"].as_array().unwrap();
+        for (end, key) in [(&line[0], "takeoff_m"), (&line[line.len() - 1], "landing_m")] {
+            for axis in 0..3 {
+                let [drawn, stated] = [end, &leg[key]].map(|place| place[axis].as_f64().unwrap());
+                assert!((drawn - stated).abs() < 1e-9, "{end} {key}");
+            }
+        }
+    }
+    assert!(features[0]["properties"]["margin_slope_up_deg"].is_number());
+}
+
+/// The memory is stated before the search, is never exceeded by what is allowed, and too little is refused.
+#[test]
+fn the_memory_of_a_mission_is_stated_and_limited() {
+    let desk = desk();
+    let sized = |more: &[&str]| desk.run(&[&["plan", "step.toml", "--quiet", "--format", "json", "--dry-run"], more].concat());
+    let bytes = |text: &str| {
+        let size: Value = serde_json::from_str(text).unwrap();
+        let parts = size["memory"].as_array().unwrap();
+        parts.iter().map(|part| part["bytes_max"].as_u64().unwrap()).sum::<u64>()
+    };
+    let free = sized(&[]);
+    assert_eq!(free.status, 0, "{}", free.stderr);
+    let within = sized(&["--memory-max-mib", "3"]);
+    assert!(bytes(&within.stdout) <= 3 << 20 && bytes(&free.stdout) > 3 << 20, "{} {}", within.stdout, free.stdout);
+    let refused = desk.run(&["plan", "step.toml", "--quiet", "--memory-max-mib", "0"]);
+    assert_eq!(refused.status, 2, "{}", refused.stdout);
+    // What fits into less has the same answer.
+    let times = [&["--memory-max-mib", "3"][..], &[]].map(|more| {
+        let ran = desk.run(&[&["plan", "step.toml", "--quiet", "--format", "json"], more].concat());
+        serde_json::from_str::<Value>(&ran.stdout).unwrap()["totals"]["mission_time_s"].as_f64().unwrap()
+    });
+    assert!((times[0] - times[1]).abs() < 1e-9, "{times:?}");
+}
+
 #[test]
 fn a_no_says_where_it_stopped_and_by_which_limits() {
     let desk = desk();

@@ -30,6 +30,9 @@ pub(crate) struct ArenaArgs {
     /// Without jumps
     #[arg(long)]
     pub(crate) no_jump: bool,
+    /// All planners over the same boxes in a table, with jumps and without
+    #[arg(long)]
+    pub(crate) compare: bool,
     /// Seed of RRT* and of random boxes [default: 1]
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
@@ -83,13 +86,14 @@ impl ArenaArgs {
     /// The planner with its options.
     pub(crate) fn planner(&self) -> Result<ArenaPlanner, Failure> {
         let is = |planner| self.planner == planner;
+        let grows = is(PlannerArg::RrtStar) || self.compare;
         let of_others = [
             ("--reading", self.reading.is_some() && !is(PlannerArg::Grid), "prices the jumps of the grid: give --planner grid"),
-            ("--nodes", self.nodes.is_some() && !is(PlannerArg::RrtStar), "counts the nodes of RRT*: give --planner rrt-star"),
+            ("--nodes", self.nodes.is_some() && !grows, "counts the nodes of RRT*: give --planner rrt-star or --compare"),
             (
                 "--seed",
-                self.seed.is_some() && !is(PlannerArg::RrtStar) && self.random.is_none(),
-                "is of RRT* and of random boxes: give --planner rrt-star or --random",
+                self.seed.is_some() && !grows && self.random.is_none(),
+                "is of RRT* and of random boxes: give --planner rrt-star, --compare or --random",
             ),
         ];
         if let Some((option, _, why)) = of_others.into_iter().find(|(_, is_given, _)| *is_given) {
@@ -101,11 +105,14 @@ impl ArenaArgs {
                 Some(ReadingArg::R1) | None => Reading::R1,
             }),
             PlannerArg::AnyAngle => ArenaPlanner::AnyAngle,
-            PlannerArg::RrtStar => {
-                let usual = RrtStarOptions::default();
-                let nodes = self.nodes.and_then(|nodes| usize::try_from(nodes).ok()).unwrap_or(usual.nodes);
-                ArenaPlanner::RrtStar(RrtStarOptions { nodes, seed: self.seed.unwrap_or(usual.seed), ..usual })
-            }
+            PlannerArg::RrtStar => ArenaPlanner::RrtStar(self.rrt_star()),
         })
+    }
+
+    /// The options of RRT*.
+    pub(crate) fn rrt_star(&self) -> RrtStarOptions {
+        let usual = RrtStarOptions::default();
+        let nodes = self.nodes.and_then(|nodes| usize::try_from(nodes).ok()).unwrap_or(usual.nodes);
+        RrtStarOptions { nodes, seed: self.seed.unwrap_or(usual.seed), ..usual }
     }
 }

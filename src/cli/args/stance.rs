@@ -6,9 +6,10 @@ use chta::ground::StandsUp;
 use clap::{Args as ClapArgs, ValueEnum};
 
 use super::{CommonArgs, Format, Position, position};
+use crate::cli::inputs::{DEFAULT_MAX_GIB, max_gib};
 
 /// Where a robot with legs can stand, and which way it may jump from there without slipping
-#[derive(Debug, ClapArgs)]
+#[derive(Clone, Debug, ClapArgs)]
 #[command(
     after_help = "Example:\n  chta stance data/terrain/mars_crater_field.tif --robot data/robots/three_legs.toml --at 60,60 --body Mars --set \
                   surface.friction_coefficient=0.6"
@@ -44,8 +45,27 @@ pub(crate) struct StanceArgs {
     /// How the answer is written to standard output
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
-    #[command(flatten)]
-    pub(crate) common: CommonArgs,
+    /// Scenario (TOML) with body, hopper and surface
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scenario: Option<PathBuf>,
+    /// Set any scenario key; overrides the scenario [example: `--set surface.friction_coefficient=0.6`]
+    #[arg(long, value_name = "TABLE.KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Known body, which gives gravity and radius (`chta bodies` lists them)
+    #[arg(long, value_name = "NAME")]
+    pub(crate) body: Option<String>,
+    /// Gravity, m/s^2
+    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    pub(crate) gravity_m_s2: Option<f64>,
+    /// Stored number that marks missing elevations, or none: all numbers are elevations [default: as the file states]
+    #[arg(long, value_name = "VALUE|none", allow_negative_numbers = true)]
+    pub(crate) no_data: Option<String>,
+    /// Most GiB read from a pipe, and from a text or mesh that is read whole
+    #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
+    pub(crate) input_max_gib: f64,
+    /// No warnings on standard error
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 /// Which way is up.
@@ -56,6 +76,13 @@ pub(crate) enum UpArg {
 }
 
 impl StanceArgs {
+    /// The options that it shares with other commands.
+    pub(crate) fn common(&self) -> CommonArgs {
+        let Self { scenario, body, gravity_m_s2, no_data, .. } = self.clone();
+        let common = CommonArgs::of_scenarios(&self.set, false, self.input_max_gib, self.quiet);
+        CommonArgs { scenario, body, gravity_m_s2, no_data, ..common }
+    }
+
     /// Which way is up.
     pub(crate) fn up(&self) -> StandsUp {
         match self.up {

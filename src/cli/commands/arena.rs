@@ -2,7 +2,10 @@
 
 use std::time::Instant;
 
-use chta::{report::arena_text, study::plan_in_arena};
+use chta::{
+    report::arena_text,
+    study::{compare_planners, plan_in_arena},
+};
 
 use crate::cli::{
     Answer, Failure,
@@ -19,7 +22,11 @@ pub(crate) fn run(args: &ArenaArgs) -> Result<Answer, Failure> {
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let file = args.output.as_deref().map(Pending::begin).transpose()?;
     let began = Instant::now();
-    let planned = plan_in_arena(&input.arena, planner, !args.no_jump).map_err(|error| Failure::about(&args.arena, &error))?;
+    let about = |error| Failure::about(&args.arena, &error);
+    let mut planned = plan_in_arena(&input.arena, planner, !args.no_jump).map_err(about)?;
+    if args.compare {
+        planned.answer.compared = Some(compare_planners(&input.arena, args.rrt_star(), !args.no_jump).map_err(about)?);
+    }
     output::say_run_time(args.quiet, began.elapsed());
     output::warn_all(args.quiet, &planned.warnings);
     let mut files = Vec::new();

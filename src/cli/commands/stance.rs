@@ -40,7 +40,7 @@ pub(crate) fn run(args: &StanceArgs) -> Result<Answer, Failure> {
     stood.warnings.splice(0..0, input.warnings.iter().cloned());
     files.picture(plot, || Some(stood.picture(&input.scenario)))?;
     files.finish()?;
-    output::warn_all(args.common.quiet, &stood.warnings);
+    output::warn_all(args.quiet, &stood.warnings);
     show(args.format, || stance_text(&stood.answer), || input.document(&stood.warnings, &stood.answer))?;
     Ok(Answer::of(stood.answer.stands))
 }

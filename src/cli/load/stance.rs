@@ -51,7 +51,7 @@ impl StanceInput {
 
 /// Loads the terrain, the robot and the scenario of a stance.
 pub(crate) fn load_stance(args: &StanceArgs) -> Result<StanceInput, Failure> {
-    let common = &args.common;
+    let common = &args.common();
     let (Some(terrain), Some(at)) = (&args.terrain, args.at) else {
         return Err(Failure::message("found neither a terrain nor --contacts, expected one of them"));
     };

@@ -4,8 +4,8 @@ use nalgebra::Vector2;
 
 use super::super::{Amount, Amounts, SurfaceNode, SurfaceNodes};
 use crate::{
-    drive::{DriveGround, DriveLeg, DriveRefusal},
-    ground::{DemGround, MapPosition},
+    drive::{DriveEdges, DriveGround, DriveLeg, DriveRefusal},
+    ground::MapPosition,
     quantity::MapPoint,
     world::Rover,
 };
@@ -16,12 +16,16 @@ const JOINED_SPACINGS: f64 = 2.0;
 /// The straight legs that a rover may drive between nodes.
 #[derive(Debug)]
 pub(super) struct DriveLegs<'a> {
-    drive: DriveGround<'a>,
+    drive: &'a DriveGround<'a>,
     nodes: &'a SurfaceNodes,
+    /// The legs between all posts, judged beforehand, where the nodes of the lattice are the posts.
+    edges: Option<&'a DriveEdges<'a>>,
     /// The neighbours of a node, in columns and rows.
     offsets: Vec<(isize, isize)>,
     /// Their directions, unit vectors to the east and the north.
     headings: Vec<Vector2<f64>>,
+    /// Their horizontal lengths, m.
+    runs_m: Vec<f64>,
     join_m: f64,
 }
 
@@ -35,14 +39,16 @@ pub(super) enum Arrival {
 }
 
 impl<'a> DriveLegs<'a> {
-    pub(super) fn new(ground: &'a DemGround, rover: &'a Rover, nodes: &'a SurfaceNodes) -> Self {
+    pub(super) fn new(drive: &'a DriveGround<'a>, nodes: &'a SurfaceNodes, edges: Option<&'a DriveEdges<'a>>) -> Self {
         let (aside_m, down_m) = nodes.lattice().spacings_m();
-        let offsets = rover.limits().neighbours.offsets();
-        let heading = |&(east, north): &(i32, i32)| Vector2::new(f64::from(east) * aside_m, f64::from(north) * down_m).normalize();
+        let offsets = drive.rover().limits().neighbours.offsets();
+        let along = |&(east, north): &(i32, i32)| Vector2::new(f64::from(east) * aside_m, f64::from(north) * down_m);
         Self {
-            drive: DriveGround::new(ground, rover),
+            drive,
             nodes,
-            headings: offsets.iter().map(heading).collect(),
+            edges,
+            headings: offsets.iter().map(|offset| along(offset).normalize()).collect(),
+            runs_m: offsets.iter().map(|offset| along(offset).norm()).collect(),
             // Rows count southwards.
             offsets: offsets.into_iter().map(|(east, north)| (east as isize, -north as isize)).collect(),
             join_m: JOINED_SPACINGS * nodes.lattice().spacing_m(),
@@ -69,19 +75,39 @@ impl<'a> DriveLegs<'a> {
 
     /// The nodes that a straight leg may lead to; the same ones from which it may lead here.
     pub(super) fn about(&self, node: SurfaceNode, at: MapPoint) -> impl Iterator<Item = (SurfaceNode, Arrival)> + '_ {
+        let neighbours = self.neighbours(node).map(|(direction, other)| (other, Arrival::Neighbour(direction)));
+        neighbours.chain(self.joined(node, at).map(|other| (other, Arrival::Joined)))
+    }
+
+    /// The legs between all posts, and the number of a node among them; `None` for a place beside the lattice, and where they are not judged
+    /// beforehand.
+    pub(super) fn edges_of(&self, node: SurfaceNode) -> Option<(&'a DriveEdges<'a>, usize)> {
+        self.edges.filter(|_| self.nodes.of_lattice(node).is_some()).map(|edges| (edges, node.index()))
+    }
+
+    /// The neighbours of a node of the lattice, by direction.
+    pub(super) fn neighbours(&self, node: SurfaceNode) -> impl Iterator<Item = (usize, SurfaceNode)> + '_ {
         let lattice = self.nodes.lattice();
-        let cell = self.nodes.of_lattice(node);
         let (rows, cols) = lattice.size();
-        let neighbours = cell.into_iter().flat_map(move |(i, j)| {
+        self.nodes.of_lattice(node).into_iter().flat_map(move |(i, j)| {
             self.offsets.iter().enumerate().filter_map(move |(direction, &(aside, down))| {
                 let (i, j) = (i.checked_add_signed(aside)?, j.checked_add_signed(down)?);
-                (i < cols && j < rows).then(|| (SurfaceNode::of_lattice(lattice, (i, j)), Arrival::Neighbour(direction)))
+                (i < cols && j < rows).then(|| (direction, SurfaceNode::of_lattice(lattice, (i, j))))
             })
-        });
-        let near = if cell.is_none() { Some(lattice.about(at, self.join_m)) } else { None };
+        })
+    }
+
+    /// The places to which a straight leg may lead from a node of the lattice beside its neighbours, or all nodes about a place beside it.
+    pub(super) fn joined(&self, node: SurfaceNode, at: MapPoint) -> impl Iterator<Item = SurfaceNode> + '_ {
+        let lattice = self.nodes.lattice();
+        let near = self.nodes.of_lattice(node).is_none().then(|| lattice.about(at, self.join_m));
         let of_lattice = near.into_iter().flatten().map(|cell| SurfaceNode::of_lattice(lattice, cell));
-        let joined = of_lattice.chain(self.nodes.places_about(at, self.join_m)).filter(move |other| *other != node);
-        neighbours.chain(joined.map(|other| (other, Arrival::Joined)))
+        of_lattice.chain(self.nodes.places_about(at, self.join_m)).filter(move |other| *other != node)
+    }
+
+    /// The horizontal length of a leg to a neighbour, m.
+    pub(super) fn run_m(&self, direction: usize) -> f64 {
+        self.runs_m[direction]
     }
 
     /// A leg between two places.

@@ -3,12 +3,13 @@
 use super::{
     super::{Amount, Budgets, RouteError, SurfaceNode, SurfaceNodes, labels::by_objective},
     MissionQuestion, Toward,
-    drive_legs::{DriveLegs, drive_amounts},
+    drive_legs::drive_amounts,
 };
 use crate::{
     drive::{DriveAmount, DriveEdges, DriveError, DriveGround, DriveMap, DriveSense},
     ground::{DemGround, MapPosition, NodeLattice},
     progress::Progress,
+    world::Rover,
 };
 
 /// The totals of these amounts for every node, NaN without a mission; `None` where the question is another one than a drive map answers: it
@@ -44,7 +45,7 @@ pub(super) fn driven(
         Ok(map) => map,
         Err(error) => return unless_cancelled(&error),
     };
-    Ok(totals(&edges, (&map, &ends), (&DriveLegs::new(ground, question.rover, nodes), amounts)))
+    Ok(totals(&edges, (&map, &ends), (question.rover, amounts)))
 }
 
 /// A map too large for a drive map is left to the search.
@@ -57,11 +58,7 @@ fn unless_cancelled<T>(error: &DriveError) -> Result<Option<T>, RouteError> {
 
 /// The totals of all amounts along the quickest ways: node after node by time, over the legs that set its time. `None` if a leg takes no time
 /// beside the time before it, so that this is no order of travel.
-fn totals(
-    edges: &DriveEdges<'_>,
-    (map, ends): (&DriveMap, &[usize]),
-    (legs, amounts): (&DriveLegs<'_>, &[Amount]),
-) -> Option<Vec<f64>> {
+fn totals(edges: &DriveEdges<'_>, (map, ends): (&DriveMap, &[usize]), (rover, amounts): (&Rover, &[Amount])) -> Option<Vec<f64>> {
     let (costs, width) = (map.costs(), amounts.len());
     let mut order: Vec<usize> = (0..costs.len()).filter(|node| costs[*node].is_finite()).collect();
     order.sort_unstable_by(|a, b| costs[*a].total_cmp(&costs[*b]).then(a.cmp(b)));
@@ -91,7 +88,7 @@ fn totals(
             };
             let sets_it = costs[before] < costs[node] && costs[before] + edges.cost(begin, direction) == costs[node];
             let Some(leg) = edges.sums(begin, direction).filter(|_| sets_it) else { continue };
-            let taken = drive_amounts(legs.rover(), &leg, 0.0);
+            let taken = drive_amounts(rover, &leg, 0.0);
             for ((found, amount), sum) in found.iter_mut().zip(amounts).zip(&totals[before * width..]) {
                 *found = sum + taken.of(*amount);
             }
@@ -153,7 +150,7 @@ mod tests {
                 let [fast, searched] = [Budgets::NONE, free].map(|budgets| {
                     let (commands, cap) = (SearchedCommands::Chosen, LabelCap::default());
                     let route = RouteQuestion { objective: &objective, budgets: &budgets, commands, errors: None, cap };
-                    let question = MissionQuestion { route, rover: &rover, travel: Travel::Drive };
+                    let question = MissionQuestion { route, rover: &rover, travel: Travel::Drive, kept_bytes_max: 0 };
                     travel_field((&ground, &nodes), &starts, (&question, TakeoffChoice::LeastTime, toward), &()).unwrap()
                 });
                 assert_eq!(fast.amounts(), searched.amounts());

@@ -11,10 +11,12 @@ use super::{
     MissionQuestion,
     drive_legs::DriveLegs,
     driven::driven,
+    kept::Kept,
     legs::TravelLegs,
 };
 use crate::{
     ballistics::TakeoffChoice,
+    drive::DriveGround,
     ground::{DemGround, MapPosition},
     progress::{Meter, Progress, Stage},
 };
@@ -102,9 +104,14 @@ pub fn travel_field(
         Toward::Start => (Side::Goal, Settling::AfterAllBut(first.1.at)),
     };
     let offered = (question.route.commands, takeoff);
-    let hops = question.travel.hops().then(|| LegOffers::new(&surface, settling, offered, question.route.errors));
-    let drive = question.travel.drives().then(|| DriveLegs::new(ground, question.rover, nodes));
-    let legs = TravelLegs::new((ground, nodes), (hops.as_ref(), drive.as_ref()), (side, *first, None), &meter);
+    let kept = Kept::of((ground, nodes), question, (None, question.comes_again()));
+    let offers = || LegOffers::new(&surface, settling, offered, question.route.errors).by_tables(kept.tables.as_ref());
+    let hops = question.travel.hops().then(offers);
+    let wheels = question.travel.drives().then(|| DriveGround::new(ground, question.rover));
+    let edges = kept.edges(wheels.as_ref(), progress)?;
+    let drive = wheels.as_ref().map(|wheels| DriveLegs::new(wheels, nodes, edges.as_ref()));
+    let by = (hops.as_ref(), drive.as_ref());
+    let legs = TravelLegs::new((ground, nodes), by, (side, *first, None), kept.pairs_bytes, &meter);
     let mut run = Run::new(&legs, legs.ends(), Tracked::new(&objective, question.route.budgets), question.route.cap);
     starts[1..].iter().for_each(|(node, _)| run.also_from(node.index()));
     run.until(false)?;

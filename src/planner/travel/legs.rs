@@ -4,13 +4,17 @@ use std::cell::{Cell, RefCell};
 
 use super::{
     super::{
-        Amount, Amounts, LegGraph, LegVisitor, PathStep, Successor, SurfaceNode, SurfaceNodes, surface_hops::Side,
-        surface_legs::LegOffers,
+        Amounts, LegGraph, LegVisitor, PathStep, Successor, SurfaceNode, SurfaceNodes,
+        pair_memo::PairMemo,
+        surface_hops::Side,
+        surface_legs::{LegOffers, LoftMemo},
     },
     drive_legs::{Arrival, DriveLegs, drive_amounts},
+    least::LeastLeft,
 };
 use crate::{
     ballistics::TakeoffChoice,
+    drive::{DriveEdges, DriveLeg},
     ground::{DemGround, MapPosition},
     progress::{Cancelled, Meter, PairCounter},
 };
@@ -41,10 +45,18 @@ pub(super) struct TravelLegs<'a> {
     /// Where it ends; `None`: it visits all states.
     goal: Option<(SurfaceNode, MapPosition)>,
     turns: Option<Turns>,
+    /// What no mission takes less of on the way to the goal.
+    least: LeastLeft,
+    /// What is kept of pairs that no table has.
+    hop_memo: Option<LoftMemo>,
+    drive_memo: Option<RefCell<PairMemo<Option<Sums>>>>,
     counter: RefCell<PairCounter<'a>>,
     hops_tested: Cell<u64>,
     drives_tested: Cell<u64>,
 }
+
+/// Of a drive leg that which counts: its horizontal length, its length, time and energy.
+type Sums = [f64; 4];
 
 /// The times of turns between the directions of neighbours, s.
 struct Turns {
@@ -66,9 +78,14 @@ impl<'a> TravelLegs<'a> {
         (ground, nodes): (&'a DemGround, &'a SurfaceNodes),
         (hops, drive): (Option<&'a LegOffers<'a>>, Option<&'a DriveLegs<'a>>),
         (side, start, goal): (Side, (SurfaceNode, MapPosition), Option<(SurfaceNode, MapPosition)>),
+        pairs_bytes: u64,
         meter: &'a Meter<'_>,
     ) -> Self {
+        let keeps = pairs_bytes > 0;
         Self {
+            least: LeastLeft::of(ground, drive.map(DriveLegs::rover), hops.map(|hops| &hops.least)),
+            hop_memo: keeps.then(|| RefCell::new(PairMemo::within(pairs_bytes))),
+            drive_memo: keeps.then(|| RefCell::new(PairMemo::within(pairs_bytes))),
             hops,
             drive,
             ground,
@@ -123,11 +140,14 @@ impl<'a> TravelLegs<'a> {
         &self,
         drive: &DriveLegs<'_>,
         layer: usize,
-        [from, to]: [(SurfaceNode, &MapPosition); 2],
+        (from, to): ((SurfaceNode, &MapPosition), (SurfaceNode, Option<&MapPosition>)),
         arrival: Arrival,
     ) -> (usize, f64) {
         let Some(turns) = &self.turns else { return (to.0.index(), 0.0) };
-        let along = (to.1.at - from.1.at).try_normalize(0.0);
+        let along = || match arrival {
+            Arrival::Neighbour(direction) => Some(drive.heading(direction)),
+            Arrival::Joined => (to.1?.at - from.1.at).try_normalize(0.0),
+        };
         let before = match layer {
             0 => None,
             layer if layer <= turns.directions => Some(drive.heading(layer - 1)),
@@ -139,7 +159,7 @@ impl<'a> TravelLegs<'a> {
                 turns.times_s[(layer - 1) * turns.directions + direction]
             }
             // Between a place and a node at the same position nothing turns.
-            _ => before.zip(along).map_or(0.0, |(before, along)| drive.turn_s(&before, &along)),
+            _ => before.zip(along()).map_or(0.0, |(before, along)| drive.turn_s(&before, &along)),
         };
         let arrives = match arrival {
             // One state of the goal is enough: nothing follows.
@@ -163,24 +183,86 @@ impl<'a> TravelLegs<'a> {
         visitor: &mut dyn LegVisitor,
     ) -> Result<(), Cancelled> {
         let Some(drive) = self.drive else { return Ok(()) };
-        for (other, arrival) in drive.about(node, at.at) {
-            if arrival == Arrival::Joined && !self.is_joined([node, other]) {
+        let Some((edges, _)) = drive.edges_of(node) else {
+            return drive.about(node, at.at).try_for_each(|to| self.drive_to(drive, (node, at), to, layer, visitor));
+        };
+        self.drive_by_edges((drive, edges), (node, at), layer, visitor)?;
+        drive.joined(node, at.at).try_for_each(|other| self.drive_to(drive, (node, at), (other, Arrival::Joined), layer, visitor))
+    }
+
+    /// Drives to the neighbours of a node by legs that were judged beforehand.
+    fn drive_by_edges(
+        &self,
+        (drive, edges): (&DriveLegs<'_>, &DriveEdges<'_>),
+        (node, at): (SurfaceNode, &MapPosition),
+        layer: usize,
+        visitor: &mut dyn LegVisitor,
+    ) -> Result<(), Cancelled> {
+        let count = drive.directions();
+        for (direction, other) in drive.neighbours(node) {
+            // Directions are in the order of their angles: half of them further on is the opposite one.
+            let (begin, along) = match self.side {
+                Side::Start => (node.index(), direction),
+                Side::Goal => (other.index(), (direction + count / 2) % count),
+            };
+            if edges.directions(begin) >> along & 1 == 0 {
                 continue;
             }
-            let Some(to) = self.position(other) else { continue };
-            let (state, turn_s) = self.turned(drive, layer, [(node, at), (other, &to)], arrival);
-            let run_m = libm::hypot(to.at.x - at.at.x, to.at.y - at.at.y);
-            if !visitor.wants(state, &drive.least(run_m, turn_s)) {
+            let (state, turn_s) = self.turned(drive, layer, ((node, at), (other, None)), Arrival::Neighbour(direction));
+            if !visitor.wants(state, &drive.least(drive.run_m(direction), turn_s)) {
                 continue;
             }
             self.drives_tested.set(self.drives_tested.get() + 1);
             self.counter.borrow_mut().pair()?;
-            let (_, [first, last]) = self.side.in_order((node, at), (other, &to));
-            if let Ok(leg) = drive.leg(first, last) {
+            if let Some(leg) = edges.sums(begin, along) {
                 visitor.visit(&Successor { node: state, command: DRIVEN, amounts: drive_amounts(drive.rover(), &leg, turn_s) });
             }
         }
         Ok(())
+    }
+
+    /// Drives to one node.
+    fn drive_to(
+        &self,
+        drive: &DriveLegs<'_>,
+        (node, at): (SurfaceNode, &MapPosition),
+        (other, arrival): (SurfaceNode, Arrival),
+        layer: usize,
+        visitor: &mut dyn LegVisitor,
+    ) -> Result<(), Cancelled> {
+        if arrival == Arrival::Joined && !self.is_joined([node, other]) {
+            return Ok(());
+        }
+        let Some(to) = self.position(other) else { return Ok(()) };
+        let (state, turn_s) = self.turned(drive, layer, ((node, at), (other, Some(&to))), arrival);
+        let run_m = libm::hypot(to.at.x - at.at.x, to.at.y - at.at.y);
+        if visitor.wants(state, &drive.least(run_m, turn_s))
+            && let Some([run_m, length_m, time_s, energy_j_kg]) = self.sums(drive, (node, at), (other, &to))?
+        {
+            let leg = DriveLeg { run_m, length_m, time_s, energy_j_kg, ..DriveLeg::default() };
+            visitor.visit(&Successor { node: state, command: DRIVEN, amounts: drive_amounts(drive.rover(), &leg, turn_s) });
+        }
+        Ok(())
+    }
+
+    /// What a drive leg takes; `None` where it is refused.
+    fn sums(
+        &self,
+        drive: &DriveLegs<'_>,
+        here: (SurfaceNode, &MapPosition),
+        there: (SurfaceNode, &MapPosition),
+    ) -> Result<Option<Sums>, Cancelled> {
+        let (pair, [first, last]) = self.side.in_order(here, there);
+        if let Some(known) = self.drive_memo.as_ref().and_then(|memo| memo.borrow().of(pair)) {
+            return Ok(known);
+        }
+        self.drives_tested.set(self.drives_tested.get() + 1);
+        self.counter.borrow_mut().pair()?;
+        let sums = drive.leg(first, last).ok().map(|leg| [leg.run_m, leg.length_m, leg.time_s, leg.energy_j_kg]);
+        if let Some(memo) = &self.drive_memo {
+            memo.borrow_mut().keep(pair, sums);
+        }
+        Ok(sums)
     }
 }
 
@@ -196,17 +278,15 @@ impl LegGraph for TravelLegs<'_> {
         // Driving first: what it reaches sooner is not tested for a hop.
         self.drive_from((node, &at), layer, visitor)?;
         if let Some(hops) = self.hops {
-            let tested = hops.visit((node, self.side), &|_| true, visitor, &mut self.counter.borrow_mut())?;
+            let tested =
+                hops.visit((node, self.side), &|_| true, visitor, self.hop_memo.as_ref(), &mut self.counter.borrow_mut())?;
             self.hops_tested.set(self.hops_tested.get() + tested);
         }
         Ok(())
     }
 
     fn least_to_goal(&self, state: usize) -> Amounts {
-        /// Rounding errors are far smaller than this share.
-        const SHAVED: f64 = 1.0 - 1e-9;
-        let Some(at) = self.position(self.node_of(state)) else { return Amounts::NONE };
         let Some((_, goal)) = &self.goal else { return Amounts::NONE };
-        Amounts::NONE.with(Amount::Distance, libm::hypot(goal.at.x - at.at.x, goal.at.y - at.at.y) * SHAVED)
+        self.position(self.node_of(state)).map_or(Amounts::NONE, |at| self.least.between(&at, goal))
     }
 }

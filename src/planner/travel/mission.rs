@@ -8,10 +8,10 @@ use super::super::{
     surface_hops::{Side, SurfaceHops},
     surface_legs::{LegOffers, Settling},
 };
-use super::{Travel, drive_legs::DriveLegs, legs::TravelLegs};
+use super::{Travel, drive_legs::DriveLegs, kept::Kept, legs::TravelLegs};
 use crate::{
     ballistics::TakeoffChoice,
-    drive::DriveRefusalCounts,
+    drive::{DriveGround, DriveRefusalCounts},
     ground::{DemGround, MapPosition},
     progress::{Meter, Progress, Stage},
     quantity::MapPoint,
@@ -27,6 +27,19 @@ pub struct MissionQuestion<'a> {
     pub rover: &'a Rover,
     /// Whether it drives, hops or does both.
     pub travel: Travel,
+    /// How many bytes a search may hold beside its states and labels to be faster: tables of hops and of drive legs, and what it computed of
+    /// pairs of nodes. With fewer it has the same answers, up to rounding, and takes longer.
+    pub kept_bytes_max: u64,
+}
+
+impl MissionQuestion<'_> {
+    /// The usual bytes that a search may hold to be faster: half a gibibyte.
+    pub const KEPT_BYTES: u64 = 1 << 29;
+
+    /// Whether a search of a graph may come to a node with more than one label.
+    pub(super) fn comes_again(&self) -> bool {
+        !self.route.budgets.are_none() || (self.travel.drives() && self.rover.limits().turn_s_per_deg > 0.0)
+    }
 }
 
 /// One move of a mission.
@@ -80,10 +93,17 @@ pub struct Mission {
 }
 
 impl Mission {
-    /// The bytes that the states of a search take, before its labels: with turning a node has as many as neighbours, and two more.
-    pub const fn bytes(nodes: &SurfaceNodes, rover: &Rover, travel: Travel) -> u64 {
+    /// The bytes that the states of a search take, before its labels: with turning a node has as many as neighbours, and two more; and the steps
+    /// within reach of a hop.
+    pub fn bytes(ground: &DemGround, nodes: &SurfaceNodes, rover: &Rover, travel: Travel) -> u64 {
         let turns = travel.drives() && rover.limits().turn_s_per_deg > 0.0;
         4 * TravelLegs::layers(turns, rover.limits().neighbours.count()) as u64 * nodes.count() as u64
+            + SurfaceHops::bytes(ground, nodes)
+    }
+
+    /// The bytes of all that a search may hold to be faster ([`MissionQuestion::kept_bytes_max`]).
+    pub fn kept_bytes(ground: &DemGround, nodes: &SurfaceNodes, rover: &Rover, travel: Travel) -> u64 {
+        Kept::most_bytes((ground, nodes), rover, travel)
     }
 }
 
@@ -104,7 +124,7 @@ pub fn travel(
     question: &MissionQuestion<'_>,
     progress: &dyn Progress,
 ) -> Result<Mission, RouteError> {
-    let mut asked = Asked::new(ground, nodes, goal, progress)?;
+    let mut asked = Asked::new((ground, nodes), goal, (question, question.comes_again()), progress)?;
     loop {
         let (mission, hops) = asked.best(question)?;
         // The fast walk equals the slice up to rounding: a hop on the very edge of a limit may be one for the walk alone.
@@ -134,7 +154,7 @@ pub fn front_of_missions(
     (amount, question): (Amount, &MissionQuestion<'_>),
     progress: &dyn Progress,
 ) -> Result<MissionFront, RouteError> {
-    let mut asked = Asked::new(ground, nodes, goal, progress)?;
+    let mut asked = Asked::new((ground, nodes), goal, (question, true), progress)?;
     loop {
         let (found, hops) = asked.with_legs(question, |asked, legs| {
             let of = (Amount::Hops, amount);
@@ -161,14 +181,16 @@ struct Asked<'a> {
     surface: SurfaceHops<'a>,
     ends: [(SurfaceNode, MapPosition); 2],
     how: &'a RouteGoal,
+    kept: Kept,
+    progress: &'a dyn Progress,
     meter: Meter<'a>,
 }
 
 impl<'a> Asked<'a> {
     fn new(
-        ground: &'a DemGround,
-        nodes: &'a SurfaceNodes,
+        (ground, nodes): (&'a DemGround, &'a SurfaceNodes),
         how: &'a RouteGoal,
+        (question, again): (&MissionQuestion<'_>, bool),
         progress: &'a dyn Progress,
     ) -> Result<Self, RouteError> {
         let surface = SurfaceHops::new(ground, nodes);
@@ -177,7 +199,9 @@ impl<'a> Asked<'a> {
             Ok::<_, RouteError>((node, nodes.position(ground, node).ok_or(RouteError::NoGround(at))?))
         };
         let ends = [node(how.start)?, node(how.goal)?];
-        Ok(Self { ground, nodes, surface, ends, how, meter: Meter::new(progress, Stage::Search) })
+        let way_m = (how.goal - how.start).norm();
+        let kept = Kept::of((ground, nodes), question, (Some(way_m), again));
+        Ok(Self { ground, nodes, surface, ends, how, kept, progress, meter: Meter::new(progress, Stage::Search) })
     }
 
     /// Gives the graph of a question.
@@ -186,13 +210,17 @@ impl<'a> Asked<'a> {
         question: &MissionQuestion<'_>,
         use_them: impl FnOnce(&Self, &TravelLegs<'_>) -> Result<T, RouteError>,
     ) -> Result<T, RouteError> {
-        let MissionQuestion { route, rover, travel } = *question;
+        let MissionQuestion { route, rover, travel, .. } = *question;
         let settling = Settling::AfterAllBut(self.ends[1].1.at);
         let offered = (route.commands, self.how.takeoff);
-        let hops = travel.hops().then(|| LegOffers::new(&self.surface, settling, offered, route.errors));
-        let drive = travel.drives().then(|| DriveLegs::new(self.ground, rover, self.nodes));
+        let offers = || LegOffers::new(&self.surface, settling, offered, route.errors).by_tables(self.kept.tables.as_ref());
+        let hops = travel.hops().then(offers);
+        let ground = travel.drives().then(|| DriveGround::new(self.ground, rover));
+        let edges = self.kept.edges(ground.as_ref(), self.progress)?;
+        let drive = ground.as_ref().map(|ground| DriveLegs::new(ground, self.nodes, edges.as_ref()));
         let ends = (Side::Start, self.ends[0], Some(self.ends[1]));
-        let legs = TravelLegs::new((self.ground, self.nodes), (hops.as_ref(), drive.as_ref()), ends, &self.meter);
+        let by = (hops.as_ref(), drive.as_ref());
+        let legs = TravelLegs::new((self.ground, self.nodes), by, ends, self.kept.pairs_bytes, &self.meter);
         use_them(self, &legs)
     }
 

@@ -6,12 +6,15 @@
 //!   travel       the best mission from a start to a goal
 //! ```
 //!
-//! Where driving joins hops, no bound on hops, speeds, energies or times of flights holds, and the search uses none.
+//! Where driving joins hops, no bound on hops, speeds or times of flights holds, and those on times and energies are for each metre
+//! ([`least`]). What the search holds to be faster is in [`kept`].
 
 mod drive_legs;
 mod driven;
 mod field;
+mod kept;
 mod kind;
+mod least;
 mod legs;
 mod mission;
 #[cfg(test)]

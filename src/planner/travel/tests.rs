@@ -17,6 +17,8 @@ use crate::{
     },
 };
 
+mod kept;
+
 struct World {
     ground: DemGround,
     nodes: SurfaceNodes,
@@ -66,7 +68,7 @@ impl World {
     fn question<'q>(&'q self, objective: &'q Objective, budgets: &'q Budgets, means: Travel) -> MissionQuestion<'q> {
         let route =
             RouteQuestion { objective, budgets, commands: SearchedCommands::Distinct, errors: None, cap: LabelCap::default() };
-        MissionQuestion { route, rover: &self.rover, travel: means }
+        MissionQuestion { route, rover: &self.rover, travel: means, kept_bytes_max: MissionQuestion::KEPT_BYTES }
     }
 
     fn goal([start, goal]: [MapPoint; 2]) -> RouteGoal {

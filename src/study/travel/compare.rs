@@ -1,18 +1,9 @@
 //! Several missions side by side.
 
-use super::plan::TravelPlanned;
-use crate::report::{CompareAnswer, CompareRow};
+use super::{super::Compared, plan::TravelPlanned};
+use crate::report::CompareRow;
 
-/// One of several scenarios that drive, with its plan.
-#[derive(Clone, Debug)]
-pub struct TravelCompared {
-    /// The plan.
-    pub planned: TravelPlanned,
-    /// Its row of the table.
-    pub row: CompareRow,
-}
-
-impl TravelCompared {
+impl Compared<TravelPlanned> {
     /// A plan and the file of its scenario; `untitled` is the name of a scenario without a title.
     pub fn of(planned: TravelPlanned, file: String, untitled: &str) -> Self {
         let answer = &planned.answer;
@@ -35,24 +26,6 @@ impl TravelCompared {
 
     /// The warnings about the input and the plan, each with the name of the file.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
-        let all = self.planned.case.warnings_with(self.planned.warnings.iter().cloned());
-        all.into_iter().map(|warning| format!("{}: {warning}", self.row.file))
-    }
-}
-
-/// Several scenarios that drive, with their plans.
-#[derive(Clone, Debug)]
-pub struct TravelComparison {
-    /// Those with an answer, in the order given.
-    pub compared: Vec<TravelCompared>,
-    /// The answer as plain data, with a row for every scenario.
-    pub answer: CompareAnswer,
-}
-
-impl TravelComparison {
-    /// The answers side by side; a scenario without one has its row alone ([`CompareRow::failed`]).
-    pub fn of(cases: Vec<Result<TravelCompared, CompareRow>>) -> Self {
-        let rows = cases.iter().map(|case| case.as_ref().map_or_else(Clone::clone, |one| one.row.clone())).collect();
-        Self { compared: cases.into_iter().flatten().collect(), answer: CompareAnswer { compared: rows } }
+        self.of_file(self.planned.case.warnings_with(self.planned.warnings.iter().cloned()))
     }
 }

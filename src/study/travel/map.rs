@@ -76,7 +76,7 @@ pub fn travel_map(
             errors: None,
             cap: LabelCap::default(),
         };
-        let question = MissionQuestion { route, rover: &keys.rover, travel: means };
+        let question = MissionQuestion { route, rover: &keys.rover, travel: means, kept_bytes_max: MissionQuestion::KEPT_BYTES };
         travel_field((ground, &nodes), &starts, (&question, scenario.search.takeoff, toward), progress)
     };
     let means: &[Travel] = if keys.travel == Travel::Both { &[Travel::Both, Travel::Drive, Travel::Hop] } else { &[keys.travel] };

@@ -6,11 +6,12 @@ mod map;
 mod picture;
 mod plan;
 mod search;
+mod size;
 mod trials;
 mod walk;
 
-pub use compare::{TravelCompared, TravelComparison};
 pub use map::{ReachedBy, TravelMap, travel_map};
 pub use plan::{TravelOptions, TravelPlanned, travel_plan};
+pub use size::travel_size;
 pub use trials::{TravelSimulated, travel_simulate};
 pub use walk::DriveDefect;

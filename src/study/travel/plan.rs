@@ -20,7 +20,7 @@ use crate::{
     report::{
         DeratingRecord, DriveLegRecord, DriveMarginsRecord, DriveRefusalRecord, HopLegRecord, HopRecord, ObjectiveRecord,
         PropellantShortage, TotalsRecord, TravelAlternativeRecord, TravelAnswer, TravelFrontRecord, TravelLegRecord,
-        TravelSearchRecord, TravelStopRecord, TravelSumsRecord, TravelTotalsRecord, hops_of,
+        TravelSearchRecord, TravelStopRecord, TravelSumsRecord, TravelTotalsRecord, hops_of, mission_geojson,
     },
     scenario::Scenario,
     terrain::Dem,
@@ -74,6 +74,14 @@ impl TravelPlanned {
     /// Whether there is a path that the machine can travel.
     pub fn is_traversable(&self) -> bool {
         self.answer.is_traversable()
+    }
+
+    /// The mission as GeoJSON over the map; `None` without a path.
+    pub fn geojson(&self) -> Option<String> {
+        let hops: Vec<Hop> = hops_in(&self.stretches);
+        self.mission.path.as_ref()?;
+        let gravity_m_s2 = self.case.scenario.body.gravity.m_s2();
+        mission_geojson(&self.answer.path, &hops, gravity_m_s2, self.case.prepared.projection.as_ref())
     }
 
     /// What it takes, as totals of paths are stated; `None` without a path.
@@ -182,13 +190,7 @@ fn answer(search: &TravelSearch, mission: &Mission, walked: &[Stretch]) -> Resul
     let budgets = scenario.budget.totals(&scenario.hopper);
     let found = mission.path.as_ref().map(|path| path.totals);
     let objective = ObjectiveRecord::new(&free.objective, &budgets, (found, &mission.unmet, mission.capped));
-    let hops: Vec<Hop> = walked
-        .iter()
-        .flat_map(|stretch| match stretch {
-            Stretch::Hops(path) => path.hops.clone(),
-            Stretch::Drive(_) => Vec::new(),
-        })
-        .collect();
+    let hops = hops_in(walked);
     let flown = HopPath::of_hops(hops, free.ground.hopper());
     let propellant_shortage = PropellantShortage::of(&flown.totals);
     let is_traversable = mission.path.is_some() && propellant_shortage.is_none() && objective.is_met();
@@ -228,6 +230,15 @@ fn answer(search: &TravelSearch, mission: &Mission, walked: &[Stretch]) -> Resul
         alternatives: None,
         front: None,
     })
+}
+
+/// All hops of a mission.
+fn hops_in(walked: &[Stretch]) -> Vec<Hop> {
+    let hops = walked.iter().flat_map(|stretch| match stretch {
+        Stretch::Hops(path) => path.hops.as_slice(),
+        Stretch::Drive(_) => &[],
+    });
+    hops.cloned().collect()
 }
 
 fn point(place: &MapPosition) -> [f64; 3] {

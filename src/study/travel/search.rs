@@ -1,6 +1,7 @@
 //! The search for a mission of a case.
 
-use super::super::{Case, CaseError, FreeRouteError, JourneyError, dem_ground::dem_ground, free_route::FreeSearch};
+use super::super::{Case, CaseError, JourneyError, dem_ground::dem_ground, free_route::FreeSearch};
+use super::size::TravelMemory;
 use crate::{
     ground::DemGround,
     planner::{
@@ -8,6 +9,7 @@ use crate::{
         front_of_missions, travel, travel_field,
     },
     progress::Progress,
+    report::SizeAnswer,
     scenario::{DriveKeys, Scenario},
     uncertainty::TravelToGo,
 };
@@ -18,6 +20,9 @@ pub(super) struct TravelSearch {
     pub(super) keys: DriveKeys,
     /// The whole ground, over which errors are flown.
     whole: Option<DemGround>,
+    memory: TravelMemory,
+    /// How many bytes a search may hold to be faster.
+    kept_bytes_max: u64,
 }
 
 impl TravelSearch {
@@ -25,13 +30,17 @@ impl TravelSearch {
     /// [`JourneyError`], also for a scenario that does not drive.
     pub(super) fn of(case: &Case) -> Result<Self, JourneyError> {
         let keys = case.scenario.drive.clone().ok_or(CaseError::DriveOnly)?;
-        let free = FreeSearch::of(case)?;
-        let needed_bytes = free.ground.terrain().dem().elevations_bytes() + Mission::bytes(&free.nodes, &keys.rover, keys.travel);
-        if let Some(allowed_bytes) = case.memory_max_bytes.filter(|allowed_bytes| needed_bytes > *allowed_bytes) {
-            return Err(FreeRouteError::TooMuchMemory { needed_bytes, allowed_bytes, nodes: free.nodes.count() as u64 }.into());
-        }
+        let mut free = FreeSearch::of(case)?;
+        let memory = TravelMemory::of(&free, &keys);
+        let (cap, kept_bytes_max) = memory.within(case.memory_max_bytes)?;
+        free.cap = cap;
         let whole = dem_ground(&free.case).map_err(Box::new)?;
-        Ok(Self { free, keys, whole })
+        Ok(Self { free, keys, whole, memory, kept_bytes_max })
+    }
+
+    /// What it takes at most.
+    pub(super) fn size(&self) -> SizeAnswer {
+        self.memory.answer(self.free.cap, self.kept_bytes_max)
     }
 
     pub(super) const fn scenario(&self) -> &Scenario {
@@ -50,7 +59,7 @@ impl TravelSearch {
             errors: errors.zip(self.whole.as_ref()),
             cap: self.free.cap,
         };
-        MissionQuestion { route, rover: &self.keys.rover, travel }
+        MissionQuestion { route, rover: &self.keys.rover, travel, kept_bytes_max: self.kept_bytes_max }
     }
 
     /// The best mission by the objective of the scenario.
