@@ -241,8 +241,8 @@ fn inverse_kinematics_claims_no_more_and_no_less_than_a_grid_over_the_joints() {
             let target = chain.hip_m() + offset;
             let verdict = chain.reach(&target);
             let nearest = grid.iter().map(|foot| (foot - target).norm()).fold(f64::INFINITY, f64::min);
-            // No joints are better than those found by more than the grid shows.
-            assert!(verdict.error_m <= nearest + 1e-3 * chain.length_m(), "{file}: {} against {nearest}", verdict.error_m);
+            // A point that the grid shows to be in reach is reached.
+            assert!(verdict.reached || nearest > 1e-3 * chain.length_m(), "{file}: {} against {nearest}", verdict.error_m);
             if offset.norm() > chain.length_m() * 1.001 {
                 assert!(
                     !verdict.reached && verdict.error_m >= offset.norm() - chain.length_m() - 1e-9,
