@@ -29,16 +29,16 @@ pub struct IkVerdict {
     ///
     /// `true` is certain: the joints are below. `false` is what no descent found.
     pub reached: bool,
-    /// How far from the point the foot is, m.
+    /// How far from the point these joints leave the foot, m. Where the point is out of reach, other joints may bring it nearer.
     pub error_m: f64,
-    /// The joints that bring it nearest, rad or m.
+    /// The joints that bring it nearest of those found, rad or m.
     pub positions: Vec<f64>,
     /// The greatest share of a joint's travel, 1 at a limit; see [`ChainJoint::travel_share`](super::ChainJoint::travel_share).
     pub travel_share: f64,
 }
 
 impl LimbChain {
-    /// The joints that bring the foot nearest to a point of the trunk frame: damped least squares
+    /// Joints that bring the foot to a point of the trunk frame, or near: damped least squares
     ///
     /// ```text
     ///     dq = J^T (J J^T + damping^2)^-1 (target - foot)

@@ -229,8 +229,11 @@ impl Reader<'_, '_> {
         let [root] = roots[..] else {
             // Of joints with a problem, links without one are a consequence.
             if self.problems.is_empty() {
-                let names: Vec<_> = roots.iter().map(|&root| format!("'{}'", links[root].name)).collect();
-                let found = if names.is_empty() { "no link".to_owned() } else { excerpt(&names.join(", "), 120) };
+                // Four names show what is meant.
+                let names: Vec<_> = roots.iter().take(4).map(|&root| format!("'{}'", links[root].name)).collect();
+                let more =
+                    if roots.len() > names.len() { format!(" and {} more", roots.len() - names.len()) } else { String::new() };
+                let found = if names.is_empty() { "no link".to_owned() } else { format!("{}{more}", names.join(", ")) };
                 self.problem(
                     robot,
                     format!("found {found} that no joint moves, expected one: the trunk, from which all limbs hang"),
