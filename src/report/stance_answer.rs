@@ -279,7 +279,15 @@ impl StanceAnswer {
                 let heading_deg = 360.0 * f64::from(number) / f64::from(headings);
                 let along = heading_of(heading_deg);
                 let of = |cone: &ConeSum| ElevationRecord::of(cone.takeoff_slopes(along));
-                RoseRecord { heading_deg, kc: of(&kc), kc_plus: of(&kc_plus), k: of(&k), spin_free: None, least_spin_m: None, push_speed_max_m_s: None }
+                RoseRecord {
+                    heading_deg,
+                    kc: of(&kc),
+                    kc_plus: of(&kc_plus),
+                    k: of(&k),
+                    spin_free: None,
+                    least_spin_m: None,
+                    push_speed_max_m_s: None,
+                }
             })
             .collect();
         let beams = rose.iter().filter_map(|row| Some((row.heading_deg, row.k?.width_deg())));

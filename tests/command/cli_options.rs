@@ -986,8 +986,18 @@ const SIMULATE: [Trial; 29] = [
 ];
 
 /// A stance on a raster.
-const STOOD: [&str; 10] =
-    ["stance", "ground.tif", "--robot", "four_legs.toml", "--at", "9,9", "--body", "mars", "--set", "surface.friction_coefficient=0.6"];
+const STOOD: [&str; 10] = [
+    "stance",
+    "ground.tif",
+    "--robot",
+    "four_legs.toml",
+    "--at",
+    "9,9",
+    "--body",
+    "mars",
+    "--set",
+    "surface.friction_coefficient=0.6",
+];
 
 /// The same with more words.
 macro_rules! stood {

@@ -7,8 +7,9 @@ use std::{collections::BTreeSet, path::Path, sync::OnceLock};
 use chta::arena::ArenaKeys;
 use chta::report::{
     ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer,
-    MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer,
-    RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+    LegsPlanAnswer, LegsSimulateAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer,
+    MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, StanceAnswer, TradeAnswer,
+    TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
 use serde::{Serialize, de::DeserializeOwned};
@@ -17,12 +18,17 @@ use crate::desk::chta;
 
 /// Commands whose answers have every part that an answer may have: found and refused, with proof, with trials, on maps with and without
 /// a projection, with propellant, with commands in steps, with risk.
-const COMMANDS: [&str; 57] = [
+const COMMANDS: [&str; 62] = [
     "plan data/drive/mars_rover.toml --alternatives",
     "plan data/drive/mars_rover.toml --set budget.mission_time_max_s=100",
     "plan data/drive/mars_rover.toml --set drive.travel=drive --set drive.slope_up_max_deg=1",
     "map data/drive/mars_rover.toml --set drive.travel=drive --return",
     "simulate data/drive/mars_rover.toml --trials 50 --compare --success-min 0.1",
+    "stance data/mesh/rubble.obj --robot data/robots/three_legs.toml --at=0,0,0.5 --body moon --set surface.friction_coefficient=0.8",
+    "stance data/mesh/rubble.obj --robot data/robots/four_legs.toml --at=0,0,0.5 --height-m 1 --body moon --set surface.friction_coefficient=0.8",
+    "plan data/mesh_scenarios/three_legs.toml --set search.contacts_max=100",
+    "plan data/mesh_scenarios/three_legs.toml --set search.contacts_max=30 --set search.seed=5 --set robot.cone=kc",
+    "simulate data/mesh_scenarios/three_legs.toml --set search.contacts_max=100 --trials 20 --compare --success-min 0.1",
     "hop data/scenarios/paper_76m.toml --from 0 --to 20",
     "hop data/scenarios/paper_76m.toml --from 0 --to 25",
     "hop data/scenarios/simple.toml",
@@ -97,6 +103,8 @@ pub(crate) fn documents() -> &'static [(String, String)] {
         commands.push("compare data/scenarios/simple.toml data/scenarios/simple_reduced.toml".to_owned());
         commands.push(format!("run data/scenarios/rolling_surely.toml -o {}", file("rolling")));
         commands.push(format!("run data/scenarios/cliff.toml -o {}", file("cliff")));
+        std::fs::write(file("contacts.csv"), "normal_x,normal_y,normal_z,friction_coefficient\n0,0,1,0.6\n").unwrap();
+        commands.push(format!("stance --contacts {}", file("contacts.csv")));
         let space = format!(
             "[body]\ngravity_m_s2 = 9.81\n[hopper]\ntakeoff_speed_max_m_s = 6\nlanding_speed_max_m_s = 6\n[surface]\nfriction_coefficient = 1\n\
              [terrain]\nmesh = '{}'\nroute = \"free\"\nstart_m = [2, 0, 1]\ngoal_m = [10, 0, 1]\n[search]\ncontacts_max = 60\n",
@@ -161,6 +169,9 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::Fan => of::<FanAnswer>(text),
         DocumentKind::Map => of::<MapAnswer>(text),
         DocumentKind::Size => of::<SizeAnswer>(text),
+        DocumentKind::Stance => of::<StanceAnswer>(text),
+        DocumentKind::PlanLegs => of::<LegsPlanAnswer>(text),
+        DocumentKind::SimulateLegs => of::<LegsSimulateAnswer>(text),
         DocumentKind::Arena => of::<ArenaAnswer>(text),
     }
 }

@@ -32,7 +32,10 @@ fn the_rose_has_three_cones_each_inside_the_next() {
     // East, away from the wall: about the diagonal, whose directions are 36.87 and 58.05 degrees beside it; and 36.87 beyond the wall.
     let east = rose.iter().find(|row| row["heading_deg"] == 90.0).unwrap();
     assert!((ends(east, "kc").unwrap()[0] - 8.130_102_354_2).abs() < 1e-9, "{east}");
-    assert!((ends(east, "kc_plus").unwrap()[0] + 13.051_940_571).abs() < 1e-9 && (ends(east, "k").unwrap()[0] + 36.869_897_645_8).abs() < 1e-9);
+    assert!(
+        (ends(east, "kc_plus").unwrap()[0] + 13.051_940_571).abs() < 1e-9
+            && (ends(east, "k").unwrap()[0] + 36.869_897_645_8).abs() < 1e-9
+    );
     assert_eq!(ends(east, "k").unwrap()[1], 90.0);
 }
 
@@ -67,7 +70,10 @@ fn a_robot_stands_on_a_raster_or_the_answer_names_its_limbs() {
         (ran.status, ran.stdout)
     };
     assert_eq!(status, 1);
-    assert!(text.contains("four legs: does not stand: 0 of 4 feet stand, expected at least 3: front left reaches no ground"), "{text}");
+    assert!(
+        text.contains("four legs: does not stand: 0 of 4 feet stand, expected at least 3: front left reaches no ground"),
+        "{text}"
+    );
     let buried = desk.run(&[&words[..], &["--height-m", "0"]].concat());
     assert!(buried.status == 1 && buried.stdout.contains("of the trunk") && buried.stdout.contains("meets facet"), "{buried:?}");
     desk.refused(&["stance", "ground.tif", "--at", "9,9", "--scenario", "map.toml"], &["found no robot", "--robot FILE"]);
@@ -104,7 +110,8 @@ fn a_robot_with_legs_is_planned_from_stance_to_stance_and_tried() {
         assert_eq!(ended, 40, "{record}");
     }
     // Without errors every trial is the plan.
-    let exact = ["takeoff_speed_sigma_fraction", "takeoff_angle_sigma_deg", "heading_sigma_deg"].map(|key| format!("uncertainty.{key}=0"));
+    let exact =
+        ["takeoff_speed_sigma_fraction", "takeoff_angle_sigma_deg", "heading_sigma_deg"].map(|key| format!("uncertainty.{key}=0"));
     let exact: Vec<&str> = exact.iter().flat_map(|key| ["--set", key.as_str()]).collect();
     let plain = json(&[&["simulate", scenario, "--set", "search.contacts_max=120", "--trials", "10"][..], &exact].concat());
     assert_eq!(plain["simulation"]["success_rate"], 1.0, "{}", plain["simulation"]);

@@ -69,6 +69,9 @@ impl Case {
             Limit::TakeoffSpeedMin => other.limits.takeoff_speed_min_m_s = None,
             Limit::TakeoffSpeedLevels => other.limits.takeoff_speed_levels = None,
             Limit::Direction
+            | Limit::Stroke
+            | Limit::Force
+            | Limit::Spin
             | Limit::KeepOut
             | Limit::RestSlope
             | Limit::FootprintSlope

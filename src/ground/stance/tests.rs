@@ -25,7 +25,12 @@ fn limb(name: &str, hip: [f64; 3], radii_m: [f64; 2]) -> Limb {
 
 /// Four legs of 0.2 m to 0.4 m at the corners of a trunk of 0.6 m by 0.3 m by 0.2 m.
 fn four_legs() -> RobotDescription {
-    let hips = [("front left", [0.3, 0.15, 0.0]), ("front right", [0.3, -0.15, 0.0]), ("hind left", [-0.3, 0.15, 0.0]), ("hind right", [-0.3, -0.15, 0.0])];
+    let hips = [
+        ("front left", [0.3, 0.15, 0.0]),
+        ("front right", [0.3, -0.15, 0.0]),
+        ("hind left", [-0.3, 0.15, 0.0]),
+        ("hind right", [-0.3, -0.15, 0.0]),
+    ];
     let limbs = hips.iter().map(|(name, hip)| limb(name, *hip, [0.2, 0.4])).collect();
     let trunk = vec![TrunkBox::upright(Point3::origin(), Vector3::new(0.3, 0.15, 0.1))];
     RobotDescription { trunk, contacts_min: 4, ..RobotDescription::new("four legs", limbs) }
@@ -69,7 +74,10 @@ fn each_kind_of_refusal_occurs() {
     assert!(edge.to_string().contains("2 of 4 feet stand, expected at least 4: front left reaches no ground"), "{edge}");
     // Under the floor every facet faces away.
     let below = on_floor.stand(Pose::facing(Point3::new(4.0, 4.0, -0.3), -Vector3::z(), Vector2::x())).unwrap_err();
-    assert!(matches!(&below, NoStance::TooFewContacts { limbs, .. } if limbs.iter().all(|(_, o)| *o == LimbOutcome::FacesAway)), "{below}");
+    assert!(
+        matches!(&below, NoStance::TooFewContacts { limbs, .. } if limbs.iter().all(|(_, o)| *o == LimbOutcome::FacesAway)),
+        "{below}"
+    );
     // All legs at one place.
     let same = RobotDescription { limbs: ["a", "b"].map(|name| limb(name, [0.0; 3], [0.2, 0.4])).to_vec(), ..four_legs() };
     let same = standing(floor(), RobotDescription { contacts_min: 2, ..same }).stand(upright(4.0, 4.0, 0.3)).unwrap_err();
@@ -80,7 +88,10 @@ fn each_kind_of_refusal_occurs() {
     let two_floors = ground(mesh_of(&quads), 3.0, 0.8, 1.62);
     let bare = RobotDescription { trunk: Vec::new(), ..four_legs() };
     let hidden = standing(two_floors, bare).stand(upright(4.0, 4.0, 0.3)).unwrap_err();
-    assert!(matches!(&hidden, NoStance::TooFewContacts { limbs, .. } if limbs.iter().all(|(_, o)| *o == LimbOutcome::Hidden)), "{hidden}");
+    assert!(
+        matches!(&hidden, NoStance::TooFewContacts { limbs, .. } if limbs.iter().all(|(_, o)| *o == LimbOutcome::Hidden)),
+        "{hidden}"
+    );
     // Inside a closed body, and on a slope that is steeper than friction bears.
     let buried = ground_in_a_block().stand(upright(4.0, 4.0, 1.0)).unwrap_err();
     assert_eq!(buried, NoStance::InsideRock);
@@ -121,7 +132,11 @@ fn windows_of_the_trunk_are_free_and_none_is_missed_between_equal_poses() {
                 let lofts = lofts.to_vec();
                 let set = ground.takeoff_set(from, to).unwrap();
                 assert_eq!(set.windows().iter().map(|window| window.lofts).collect::<Vec<_>>(), lofts);
-                if lofts.is_empty() { shut += 1 } else { open += 1 }
+                if lofts.is_empty() {
+                    shut += 1
+                } else {
+                    open += 1
+                }
                 for window in lofts.iter().take(2) {
                     let loft = window.lower + (window.upper - window.lower) * draw.uniform(0.0, 1.0);
                     let arc = Arc::new(sight, loft, 1.62);
@@ -191,7 +206,9 @@ fn strokes_forces_and_spin_narrow_windows_by_name() {
         let set = ground.takeoff_set(&from, &to).unwrap();
         let Some(window) = set.windows().first() else {
             assert!(limit.is_some(), "the plain limits leave a window");
-            assert!(matches!(set.conflict(), Some(crate::ground::MeshConflict::Limits(conflict)) if Some(conflict.counted_under()) == limit));
+            assert!(
+                matches!(set.conflict(), Some(crate::ground::MeshConflict::Limits(conflict)) if Some(conflict.counted_under()) == limit)
+            );
             continue;
         };
         let heading = set.course().plane.heading;
