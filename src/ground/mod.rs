@@ -41,6 +41,8 @@ pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostHopsSize, Post
 pub(crate) use posts::{Offset, OverlayTable};
 #[cfg(test)]
 pub(crate) use posts::{OffsetTable, Spacing};
+// A raw fact of a ground: the independent checker reads its cells.
+pub(crate) use crate::terrain::Layer;
 pub use stance::{Foothold, LimbOutcome, NoFriction, NoStance, Pose, Stance, StanceBuffers, StanceGround, StandsUp, TrunkHit};
 pub use surface::{
     Around, ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Profiles, Side, Surface, TakeoffWindows, Triangulated,

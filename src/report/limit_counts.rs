@@ -89,7 +89,9 @@ impl JsonSchema for LimitCounts {
             (limit.name().to_owned(), count.to_value())
         };
         let properties: serde_json::Map<String, serde_json::Value> = Limit::ALL.into_iter().map(property).collect();
-        let layers = serde_json::Map::from_iter([(LayerName::LIMIT_PATTERN.to_owned(), count.to_value())]);
+        let mut of_layer = count.clone();
+        of_layer.insert("description".to_owned(), "Refusals by a layer of the scenario; absent if it refuses nothing.".into());
+        let layers = serde_json::Map::from_iter([(LayerName::LIMIT_PATTERN.to_owned(), of_layer.to_value())]);
         json_schema!({ "type": "object", "properties": properties, "patternProperties": layers, "additionalProperties": false })
     }
 }

@@ -385,7 +385,8 @@ impl Entries {
         if let (Kind::Layer, Some((layer, own))) = (key.kind, name.split_once('.')) {
             let mut keys = self.value(table, layer).and_then(toml::Value::as_table).cloned().unwrap_or_default();
             keys.insert(own.to_owned(), value);
-            return self.add(table, layer, keys.into(), place, key_place);
+            self.given.insert((table.to_owned(), layer.to_owned()), Entry { value: keys.into(), place });
+            return;
         }
         if fits(&value, key.kind) {
             if let (Some(Place::Option(before)), Place::Option(now)) = (self.place(table, name), &place)

@@ -160,7 +160,7 @@ impl StoredRaster {
     /// [`Dem::new`].
     pub(super) fn finish(self, context: &ReadContext) -> Result<Dem, TerrainError> {
         let Self { rows, cols, mut posts, georeference, states_metres, south_up, scaling, step } = self;
-        let ReadContext { no_data: rule, sidecars, .. } = context;
+        let ReadContext { no_data: rule, of_any_unit, sidecars } = context;
         let (georeference, stated_beside) = sidecars.place(georeference, (rows, cols), south_up)?;
         let lattice = PostLattice::new(rows, cols, georeference)?;
         let whole = Window { first_row: 0, first_col: 0, rows, cols };
@@ -169,7 +169,8 @@ impl StoredRaster {
         }
         let dem = Dem::from_lattice(lattice, posts.narrowed())?;
         judge(&dem, *rule, scaling)?;
-        if !states_metres && !stated_beside {
+        // The relief tells degrees from metres; other values than elevations do not.
+        if !states_metres && !stated_beside && !of_any_unit {
             refuse_degrees(&dem)?;
         }
         Ok(dem.with_step(step))

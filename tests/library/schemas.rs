@@ -51,7 +51,7 @@ fn vague(schema: &Value, at: &str, found: &mut Vec<String>) {
         return;
     };
     let composed = ["anyOf", "oneOf", "allOf"].into_iter().filter_map(|key| Some((key, keys.get(key)?.as_array()?)));
-    let says = ["type", "$ref", "enum", "const"].iter().any(|key| keys.contains_key(*key));
+    let says = ["type", "$ref", "enum", "const", "pattern"].iter().any(|key| keys.contains_key(*key));
     let mut has_parts = false;
     for (key, parts) in composed {
         has_parts = true;

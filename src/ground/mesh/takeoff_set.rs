@@ -33,6 +33,7 @@ pub struct MeshWindow {
 
 /// Why no arc joins two contacts of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "one value per explained pair, which is not kept in lists")]
 pub enum MeshConflict {
     /// Limits other than the terrain between the contacts.
     Limits(Conflict),

@@ -5,9 +5,8 @@ use super::{
     checker::{Checker, MAP_TOLERANCE},
 };
 use crate::{
-    ground::Surface,
+    ground::{Layer, Surface},
     quantity::MapPoint,
-    terrain::Layer,
     world::{LayerName, Limit},
 };
 
