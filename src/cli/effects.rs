@@ -181,6 +181,9 @@ impl Purpose {
             ("search", "risk" | "risk_extra_hops_max") => by_risk,
             ("budget", "estimated_success_min") => by_risk || matches!(self, Self::Require | Self::Trade),
             ("budget", _) | ("search", "objective") => self.plans_by_objective(),
+            ("mission", _) => {
+                matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Require | Self::Trade)
+            }
             ("drive", _) => {
                 matches!(
                     self,

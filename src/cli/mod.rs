@@ -15,6 +15,7 @@ mod landings;
 mod load;
 mod map_input;
 mod map_outputs;
+mod not_for_targets;
 mod not_for_travel;
 mod not_on_mesh;
 mod output;

@@ -32,6 +32,7 @@ mod route_gap;
 mod search;
 mod surface_hops;
 mod surface_legs;
+mod tour;
 mod travel;
 
 pub use amount::{Amount, Amounts};
@@ -48,6 +49,7 @@ pub use objective::{Objective, ObjectiveProblem};
 pub use route_gap::RouteGap;
 pub use search::{FoundPath, LabelCap, LegGraph, LegVisitor, PathStep, SearchResult, Successor, UnmetBudget, search};
 pub use surface_legs::SurfaceLegs;
+pub use tour::{TARGETS_MAX, Tour, TourLeg, TourQuestion, TourWork, VisitOrder, WhyLeftOut, fewest_hops_of_visits, tour};
 pub(crate) use travel::drive_amounts;
 pub use travel::{
     Mission, MissionFront, MissionMove, MissionPath, MissionQuestion, MissionWork, Toward, Travel, TravelField, front_of_missions,

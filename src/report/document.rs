@@ -25,6 +25,8 @@ pub enum DocumentKind {
     PlanMesh,
     /// A path of a scenario that drives: [`TravelAnswer`](super::TravelAnswer).
     PlanTravel,
+    /// A path over several targets: [`TargetsAnswer`](super::TargetsAnswer).
+    PlanTargets,
     /// A path, beside the other files of a run: [`PlanAnswer`](super::PlanAnswer).
     Run,
     /// A path over a mesh, beside the other files of a run: [`MeshPlanAnswer`](super::MeshPlanAnswer).
@@ -35,6 +37,8 @@ pub enum DocumentKind {
     SimulateMesh,
     /// Trials of a mission of a scenario that drives: [`TravelSimulateAnswer`](super::TravelSimulateAnswer).
     SimulateTravel,
+    /// Trials of a mission over several targets: [`TargetsSimulateAnswer`](super::TargetsSimulateAnswer).
+    SimulateTargets,
     /// An experiment with trials: [`ExperimentAnswer`](super::ExperimentAnswer).
     SimulateExperiment,
     /// The least capability: [`RequireAnswer`](super::RequireAnswer).
@@ -59,7 +63,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 25] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -68,11 +72,13 @@ impl DocumentKind {
         Self::Plan,
         Self::PlanMesh,
         Self::PlanTravel,
+        Self::PlanTargets,
         Self::Run,
         Self::RunMesh,
         Self::Simulate,
         Self::SimulateMesh,
         Self::SimulateTravel,
+        Self::SimulateTargets,
         Self::SimulateExperiment,
         Self::Require,
         Self::Trade,
@@ -96,11 +102,13 @@ impl DocumentKind {
             Self::Plan => "plan",
             Self::PlanMesh => "plan-mesh",
             Self::PlanTravel => "plan-travel",
+            Self::PlanTargets => "plan-targets",
             Self::Run => "run",
             Self::RunMesh => "run-mesh",
             Self::Simulate => "simulate",
             Self::SimulateMesh => "simulate-mesh",
             Self::SimulateTravel => "simulate-travel",
+            Self::SimulateTargets => "simulate-targets",
             Self::SimulateExperiment => "simulate-experiment",
             Self::Require => "require",
             Self::Trade => "trade",

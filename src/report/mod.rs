@@ -35,6 +35,8 @@ mod simulate_answer;
 mod size_answer;
 mod stated;
 mod success_record;
+mod targets_answer;
+mod targets_text;
 mod text;
 mod trade_answer;
 mod trajectory;
@@ -100,6 +102,11 @@ pub use size_answer::{SizeAnswer, SizeRecord};
 pub use success_record::{
     FrontRecord, FrontSearchRecord, FrontSuccess, SuccessBudgetRecord, amount_front_text, estimate_ci95, front_text,
 };
+pub use targets_answer::{
+    LeftOutRecord, OverBudgetRecord, TargetHopRecord, TargetRecord, TargetsAnswer, TargetsSearchRecord, TargetsSimulateAnswer,
+    TripRecord, VisitRecord, VisitedRecord, WhyRecord, write_target_hops_csv,
+};
+pub use targets_text::{targets_simulate_text, targets_text};
 pub use text::{FurtherMeans, check_text, hop_text, path_text};
 pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow, with_unit};
 pub use trajectory::{trajectory_columns, write_trajectory_csv};

@@ -12,6 +12,7 @@
 //! require      the least capability with which the goal can be reached
 //! trade        a verdict for every value of one or two keys
 //! compare      several scenarios side by side
+//! targets_plan a mission over several targets; targets_simulate its trials
 //! arena        a path of a wheeled jumper among boxes
 //! ```
 
@@ -67,6 +68,7 @@ mod sensitivity;
 mod simulate;
 pub mod slice;
 mod swept_key;
+mod targets;
 mod to_go;
 mod trade;
 mod trade_free;
@@ -108,6 +110,7 @@ pub use schema::SchemaKind;
 pub use sense::TrialGround;
 pub use simulate::{SimulateError, SimulateOptions, Simulated, Trials, simulate};
 pub use swept_key::SweptKey;
+pub use targets::{TargetsPlanned, TargetsSimulated, targets_plan, targets_simulate};
 pub use trade::{CellError, Trade, TradeError, TradedCells, Varied, verdict};
 pub use traded::{Traded, trade};
 pub use trajectory::TrajectoryError;

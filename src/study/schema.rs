@@ -8,7 +8,7 @@ use crate::{
     report::{
         ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
         MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer,
-        SimulateAnswer, SizeAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+        SimulateAnswer, SizeAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
     },
     scenario::scenario_schema,
 };
@@ -57,9 +57,11 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::CheckMesh => derived::<MeshCheckAnswer>(),
         DocumentKind::PlanMesh | DocumentKind::RunMesh => derived::<MeshPlanAnswer>(),
         DocumentKind::PlanTravel => derived::<TravelAnswer>(),
+        DocumentKind::PlanTargets => derived::<TargetsAnswer>(),
         DocumentKind::Simulate => derived::<SimulateAnswer>(),
         DocumentKind::SimulateMesh => derived::<MeshSimulateAnswer>(),
         DocumentKind::SimulateTravel => derived::<TravelSimulateAnswer>(),
+        DocumentKind::SimulateTargets => derived::<TargetsSimulateAnswer>(),
         DocumentKind::SimulateExperiment => derived::<ExperimentAnswer>(),
         DocumentKind::Require => derived::<RequireAnswer>(),
         DocumentKind::Trade => derived::<TradeAnswer>(),

@@ -8,7 +8,8 @@ use chta::arena::ArenaKeys;
 use chta::report::{
     ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer,
     MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer,
-    RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+    RequireAnswer, SimulateAnswer, SizeAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer,
+    TravelSimulateAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
 use serde::{Serialize, de::DeserializeOwned};
@@ -150,6 +151,8 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::CheckMesh => of::<MeshCheckAnswer>(text),
         DocumentKind::PlanMesh | DocumentKind::RunMesh => of::<MeshPlanAnswer>(text),
         DocumentKind::PlanTravel => of::<TravelAnswer>(text),
+        DocumentKind::PlanTargets => of::<TargetsAnswer>(text),
+        DocumentKind::SimulateTargets => of::<TargetsSimulateAnswer>(text),
         DocumentKind::MapTravel => of::<TravelMapAnswer>(text),
         DocumentKind::SimulateTravel => of::<TravelSimulateAnswer>(text),
         DocumentKind::Simulate => of::<SimulateAnswer>(text),

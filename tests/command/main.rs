@@ -50,6 +50,7 @@ mod stated_maps;
 mod studies;
 mod success;
 mod takeoff_speeds;
+mod targets;
 mod trade_compare;
 mod trajectory;
 mod travel;

@@ -78,6 +78,7 @@ mod slice_file;
 mod sound_files;
 mod sweep;
 mod takeoff_speeds;
+mod targets;
 mod terrain_files;
 mod terrain_read_once;
 mod timetable;
