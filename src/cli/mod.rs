@@ -21,6 +21,7 @@ mod not_on_mesh;
 mod output;
 mod progress;
 mod run_folder;
+mod sites_input;
 mod threads;
 mod trajectory;
 mod unanswered;
@@ -81,6 +82,7 @@ fn answer_of(command: Command) -> Result<Answer, Failure> {
         Command::Slice(args) => commands::slice::run(&args),
         Command::Fan(args) => commands::fan::run(&args),
         Command::Map(args) => commands::map::run(&args),
+        Command::Sites(args) => commands::sites::run(&args),
         Command::Hop(args) => commands::hop::run(&args),
         Command::Check(args) => commands::check::run(&args),
         Command::Plan(args) => commands::plan::run(&args),

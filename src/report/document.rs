@@ -55,6 +55,8 @@ pub enum DocumentKind {
     MapMesh,
     /// Missions to all nodes of a map, of a scenario that drives: [`TravelMapAnswer`](super::TravelMapAnswer).
     MapTravel,
+    /// Landing sites ranked: [`SitesAnswer`](super::SitesAnswer).
+    Sites,
     /// What an answer takes before it is computed: [`SizeAnswer`](super::SizeAnswer).
     Size,
     /// A path of a wheeled jumper among boxes: [`ArenaAnswer`](super::ArenaAnswer).
@@ -63,7 +65,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -87,6 +89,7 @@ impl DocumentKind {
         Self::Map,
         Self::MapMesh,
         Self::MapTravel,
+        Self::Sites,
         Self::Size,
         Self::Arena,
     ];
@@ -117,6 +120,7 @@ impl DocumentKind {
             Self::Map => "map",
             Self::MapMesh => "map-mesh",
             Self::MapTravel => "map-travel",
+            Self::Sites => "sites",
             Self::Size => "size",
             Self::Arena => "arena",
         }

@@ -32,6 +32,7 @@ mod route_record;
 mod sensitivity_answer;
 mod sigma_margins;
 mod simulate_answer;
+mod sites_answer;
 mod size_answer;
 mod stated;
 mod success_record;
@@ -98,6 +99,7 @@ pub use simulate_answer::{
     EllipseRecord, ErrorRecord, FailureRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord,
     SuccessRequirement, simulate_text,
 };
+pub use sites_answer::{SiteRecord, SitesAnswer};
 pub use size_answer::{SizeAnswer, SizeRecord};
 pub use success_record::{
     FrontRecord, FrontSearchRecord, FrontSuccess, SuccessBudgetRecord, amount_front_text, estimate_ci95, front_text,

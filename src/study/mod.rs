@@ -13,6 +13,7 @@
 //! trade        a verdict for every value of one or two keys
 //! compare      several scenarios side by side
 //! targets_plan a mission over several targets; targets_simulate its trials
+//! sites        landing sites ranked
 //! arena        a path of a wheeled jumper among boxes
 //! ```
 
@@ -66,6 +67,7 @@ mod schema;
 mod sense;
 mod sensitivity;
 mod simulate;
+mod sites;
 pub mod slice;
 mod swept_key;
 mod targets;
@@ -109,6 +111,7 @@ pub use require::{RangeProblem, RequireError, Required, Requirement, require};
 pub use schema::SchemaKind;
 pub use sense::TrialGround;
 pub use simulate::{SimulateError, SimulateOptions, Simulated, Trials, simulate};
+pub use sites::{Candidates, SitesQuestion, SitesStudy, sites};
 pub use swept_key::SweptKey;
 pub use targets::{TargetsPlanned, TargetsSimulated, targets_plan, targets_simulate};
 pub use trade::{CellError, Trade, TradeError, TradedCells, Varied, verdict};

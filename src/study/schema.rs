@@ -8,7 +8,7 @@ use crate::{
     report::{
         ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
         MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer,
-        SimulateAnswer, SizeAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+        SimulateAnswer, SitesAnswer, SizeAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
     },
     scenario::scenario_schema,
 };
@@ -70,6 +70,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Map => derived::<MapAnswer>(),
         DocumentKind::MapMesh => derived::<MeshMapAnswer>(),
         DocumentKind::MapTravel => derived::<TravelMapAnswer>(),
+        DocumentKind::Sites => derived::<SitesAnswer>(),
         DocumentKind::Size => derived::<SizeAnswer>(),
         DocumentKind::Arena => return arena_schema(),
     };

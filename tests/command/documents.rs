@@ -8,7 +8,7 @@ use chta::arena::ArenaKeys;
 use chta::report::{
     ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer,
     MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer,
-    RequireAnswer, SimulateAnswer, SizeAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer,
+    RequireAnswer, SimulateAnswer, SitesAnswer, SizeAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer,
     TravelSimulateAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
@@ -163,6 +163,7 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::Compare => of::<CompareAnswer>(text),
         DocumentKind::Fan => of::<FanAnswer>(text),
         DocumentKind::Map => of::<MapAnswer>(text),
+        DocumentKind::Sites => of::<SitesAnswer>(text),
         DocumentKind::Size => of::<SizeAnswer>(text),
         DocumentKind::Arena => of::<ArenaAnswer>(text),
     }

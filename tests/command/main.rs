@@ -46,6 +46,7 @@ mod sentences;
 mod setup;
 mod shipped_scenarios;
 mod simulate_command;
+mod sites;
 mod stated_maps;
 mod studies;
 mod success;

@@ -125,7 +125,7 @@ impl NodeSpacing {
 }
 
 /// Reads a spacing of nodes; its range is that of the key.
-fn node_spacing(text: &str) -> Result<NodeSpacing, String> {
+pub(super) fn node_spacing(text: &str) -> Result<NodeSpacing, String> {
     match text.trim() {
         "auto" => Ok(NodeSpacing::Auto),
         other => other

@@ -5,6 +5,7 @@ mod journeys;
 mod maps;
 mod position;
 mod setup;
+mod sites;
 mod synth;
 mod terrains;
 
@@ -26,6 +27,7 @@ pub(crate) use maps::{FanArgs, MapArgs, NodeSpacing};
 pub(crate) use position::{Position, place};
 use position::{lon_lat, map_point, position};
 pub(crate) use setup::{CompletionsArgs, ManArgs, SchemaArgs};
+pub(crate) use sites::SitesArgs;
 pub(crate) use synth::{MeshArg, SynthArgs};
 pub(crate) use terrains::SliceArgs;
 
@@ -49,6 +51,7 @@ pub(crate) enum Command {
     Slice(SliceArgs),
     Fan(FanArgs),
     Map(Box<MapArgs>),
+    Sites(Box<SitesArgs>),
     Hop(HopArgs),
     Check(CheckArgs),
     Plan(PlanArgs),

@@ -23,6 +23,7 @@ mod run_targets;
 mod run_travel;
 pub(super) mod schema;
 pub(super) mod simulate;
+pub(super) mod sites;
 pub(super) mod slice;
 pub(super) mod synth;
 pub(super) mod trade;
