@@ -184,7 +184,10 @@ impl Purpose {
                 by_objective
                     || !matches!(
                         self,
-                        Self::Trade | Self::Fan | Self::Sites { .. } | Self::Map { goals: false, effort: false, amounts: false, .. }
+                        Self::Trade
+                            | Self::Fan
+                            | Self::Sites { .. }
+                            | Self::Map { goals: false, effort: false, amounts: false, .. }
                     )
             }
             ("search", "split") => !on_a_dem && !matches!(self, Self::Hop | Self::Trade),
@@ -217,10 +220,7 @@ impl Purpose {
 
     /// Whether its hops have commands in the machine's steps.
     pub(super) const fn flies_commands(self) -> bool {
-        !matches!(
-            self,
-            Self::Hop | Self::Require | Self::Trade | Self::Fan | Self::Map { .. } | Self::MapMesh | Self::Sites { .. }
-        )
+        !matches!(self, Self::Hop | Self::Require | Self::Trade | Self::Fan | Self::Map { .. } | Self::MapMesh | Self::Sites { .. })
     }
 
     /// Whether its answer is no where the path takes more propellant than the machine has.

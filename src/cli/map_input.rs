@@ -56,7 +56,7 @@ impl MapInput {
             (None, Some([start, _])) if !has_start => vec![of_key("start", *start)],
             _ => of_options("--start", &args.start, &args.start_lonlat),
         };
-        if starts.is_empty() {
+        if starts.is_empty() && !args.asks_for_single_hops() {
             return Err(Failure::message(format!(
                 "{}: found no start, expected one for a map: give --start X,Y, --start-lonlat LON,LAT or --starts FILE, or a scenario whose \
                  [terrain] has a dem with start_m and goal_m",

@@ -104,21 +104,39 @@ impl SitesInput {
                 100.0 * best.return_share
             )
         });
+        let shares = || answer.sites.iter().filter(|site| site.refusal.is_none()).map(|site| site.reachable_share);
+        let spread = shares().fold(0.0, f64::max) - shares().fold(1.0, f64::min);
+        // Where all reach the same, hops tell them apart.
+        let by_hops = count > 0 || spread < ALIKE;
+        let value_name = match (by_hops, count) {
+            (false, _) => "share of the nodes that is reached from a candidate (%)",
+            (true, 0) => "mean hops from a candidate to the nodes that it reaches",
+            (true, _) => "mean hops from a candidate to the targets that it reaches",
+        };
         draw_sites(&SitesFigure {
-            caption: Caption { title: format!("Landing sites: {}", self.bare.title_of_map()), lines: vec![conditions(scenario), best] },
+            caption: Caption {
+                title: format!("Landing sites: {}", self.bare.title_of_map()),
+                lines: vec![conditions(scenario), best],
+            },
             dem: prepared.dem(),
-            sites: answer.sites.iter().map(mark).collect(),
+            sites: answer.sites.iter().map(|site| mark(site, by_hops)).collect(),
+            value_name: value_name.to_owned(),
             targets: answer.targets_m.iter().map(|[x_m, y_m]| MapPoint::new(*x_m, *y_m)).collect(),
         })
     }
 }
 
-fn mark(site: &SiteRecord) -> SiteMark {
-    SiteMark {
-        at: MapPoint::new(site.x_m, site.y_m),
-        rank: site.rank,
-        share: site.refusal.is_none().then_some(site.reachable_share),
-    }
+/// Shares that differ by less are alike in a picture.
+const ALIKE: f64 = 0.01;
+
+fn mark(site: &SiteRecord, by_hops: bool) -> SiteMark {
+    let share = 100.0 * site.reachable_share;
+    let (value, name) = match site.mean_hops.filter(|_| by_hops) {
+        Some(hops) => (Some(hops), format!("{}: {hops:.1} hops", site.rank)),
+        None if by_hops => (None, String::new()),
+        None => (Some(share), format!("{}: {share:.0} %", site.rank)),
+    };
+    SiteMark { at: MapPoint::new(site.x_m, site.y_m), value: value.filter(|_| site.refusal.is_none()), name }
 }
 
 /// The file of the sites: a table, or a raster.

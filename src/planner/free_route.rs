@@ -4,8 +4,7 @@
 //! objective ([`search`]). Where hops come first, paths of the fewest hops are compared layer by layer instead ([`best_of_fewest`]).
 
 use super::{
-    Amount, Amounts, Budgets, LabelCap, Objective, SearchedCommands, SurfaceNode, SurfaceNodes, TooManyNodes,
-    UnmetBudget,
+    Amount, Amounts, Budgets, LabelCap, Objective, SearchedCommands, SurfaceNode, SurfaceNodes, TooManyNodes, UnmetBudget,
     by_layers::best_of_fewest,
     fewest_hops::{FewestHops, Within},
     front,

@@ -139,7 +139,7 @@ impl SitesAnswer {
         const MOST: usize = 40;
         let node = if self.nodes_per_post > 1 { "node" } else { "post" };
         let mut text = format!(
-            "{} candidates over {} {node}s, in {} parts of candidates that reach each other; searches: {}\n",
+            "{} candidates over {} {node}s; sets of them that reach each other: {}; searches over all {node}s: {}\n",
             self.sites.len(),
             self.nodes,
             self.parts,
@@ -181,7 +181,8 @@ impl SitesAnswer {
         let or_none = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
         let hops = site.target_hops.iter().map(|hops| or_none(hops.map(|hops| hops.to_string()))).collect::<Vec<_>>().join(" ");
         let count = if self.targets_m.is_empty() { site.reachable_nodes } else { site.targets_reached };
-        let amount = (self.amount != Amount::Hops).then(|| format!("{:>16}", or_none(site.mean_total.map(|mean| format!("{mean:.3}")))));
+        let amount =
+            (self.amount != Amount::Hops).then(|| format!("{:>16}", or_none(site.mean_total.map(|mean| format!("{mean:.3}")))));
         let refusal = site.refusal.as_ref().map(|refusal| format!("  {refusal}")).unwrap_or_default();
         format!(
             "{:>5}{:>10}{:>12.3}{:>12.3}{:>12.2}{:>11.2}{count:>9}{:>13}{:>12}{}  {hops}{refusal}",

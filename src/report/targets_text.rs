@@ -99,7 +99,7 @@ fn stop(target: Option<usize>) -> String {
 
 fn visits_table(sheet: &mut Sheet, answer: &TargetsAnswer) {
     sheet.line(format_args!(
-        "\n{:>5}  {:<22}{:>13}{:>6}{:>7}{:>13}{:>15}{:>14}{:>15}",
+        "\n{:>5}  {:<22}{:>13}{:>6}{:>7}{:>13}{:>15}{:>15}{:>18}",
         "visit", "leg", "straight (m)", "hops", "least", "distance (m)", "energy (J/kg)", "delta-v (m/s)", "mission time (s)"
     ));
     for visit in &answer.visits {
@@ -107,7 +107,7 @@ fn visits_table(sheet: &mut Sheet, answer: &TargetsAnswer) {
         let name = format!("{} to {}", stop(visit.from_target), stop(visit.target));
         let least = hops_lower_bound.map_or_else(|| "-".to_owned(), |least| least.to_string());
         sheet.line(format_args!(
-            "{:>5}  {name:<22}{straight_line_m:>13.3}{:>6}{least:>7}{:>13.3}{:>15.4}{:>14.4}{:>15.3}",
+            "{:>5}  {name:<22}{straight_line_m:>13.3}{:>6}{least:>7}{:>13.3}{:>15.4}{:>15.4}{:>18.3}",
             visit.visit, leg.hops, leg.distance_m, leg.energy_j_kg, leg.delta_v_m_s, leg.mission_time_s
         ));
     }
@@ -115,7 +115,7 @@ fn visits_table(sheet: &mut Sheet, answer: &TargetsAnswer) {
         let TripRecord { hops, distance_m, energy_j_kg, delta_v_m_s, mission_time_s, .. } = arrival;
         let straight_m: f64 = answer.visits.iter().map(|visit| visit.straight_line_m).sum();
         sheet.line(format_args!(
-            "{:>5}  {:<22}{straight_m:>13.3}{hops:>6}{:>7}{distance_m:>13.3}{energy_j_kg:>15.4}{delta_v_m_s:>14.4}{mission_time_s:>15.3}",
+            "{:>5}  {:<22}{straight_m:>13.3}{hops:>6}{:>7}{distance_m:>13.3}{energy_j_kg:>15.4}{delta_v_m_s:>15.4}{mission_time_s:>18.3}",
             "all", "", ""
         ));
     }

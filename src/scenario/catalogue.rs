@@ -592,12 +592,7 @@ pub const CATALOGUE: [Key; 122] = [
     key("uncertainty", "trials", Kind::Count { min: 1, max: MOST }, "how many trials; absent: 10000"),
     key("uncertainty", "seed", Kind::Count { min: 0, max: MOST }, "seed of all draws; absent: 0"),
     key("mission", "targets_m", Kind::MapPoints, "targets to visit, [[x, y], ...], m, at most 12; on a dem with route = \"free\""),
-    key(
-        "mission",
-        "targets_lonlat_deg",
-        Kind::LonLats,
-        "instead: targets as [[longitude, planetocentric latitude], ...], degrees",
-    ),
+    key("mission", "targets_lonlat_deg", Kind::LonLats, "instead: targets as [[longitude, planetocentric latitude], ...], degrees"),
     key("mission", "order", Kind::Word(&ORDERS), "best: the best order by the objective; given: as listed; absent: best"),
     key("mission", "return_to_start", Kind::Flag, "the mission ends where it began; absent: at the last target"),
     key("report", "title", Kind::Text, "title of the picture; absent: the scenario's file name"),

@@ -26,12 +26,7 @@ pub(super) fn targets(entries: &Entries) -> Vec<MapPlace> {
 }
 
 /// The keys; `None` if the scenario has no `[mission]`. Reports what does not go with it.
-pub(super) fn mission(
-    entries: &mut Entries,
-    terrain: Option<&TerrainSource>,
-    route: Route,
-    drives: bool,
-) -> Option<MissionKeys> {
+pub(super) fn mission(entries: &mut Entries, terrain: Option<&TerrainSource>, route: Route, drives: bool) -> Option<MissionKeys> {
     if !entries.has_table("mission") {
         return None;
     }
@@ -81,9 +76,24 @@ pub(super) fn mission(
 fn refuse_beside(entries: &mut Entries, key: &str) {
     let beside = [
         ("mission", "targets_lonlat_deg", "gives the targets a second time", "remove one of the two"),
-        ("terrain", "goal_m", "is where a journey ends, and a mission ends at its last target, or at its start", "add it to the targets, or remove it"),
-        ("terrain", "goal_lonlat_deg", "is where a journey ends, and a mission ends at its last target, or at its start", "add it to the targets, or remove it"),
-        ("budget", "estimated_success_min", "chooses among paths to one goal", "remove it: simulate --success-min asks for the success of the whole mission"),
+        (
+            "terrain",
+            "goal_m",
+            "is where a journey ends, and a mission ends at its last target, or at its start",
+            "add it to the targets, or remove it",
+        ),
+        (
+            "terrain",
+            "goal_lonlat_deg",
+            "is where a journey ends, and a mission ends at its last target, or at its start",
+            "add it to the targets, or remove it",
+        ),
+        (
+            "budget",
+            "estimated_success_min",
+            "chooses among paths to one goal",
+            "remove it: the trials of the whole mission show its success",
+        ),
     ];
     for (table, name, what, help) in beside {
         if (table, name) != ("mission", key) && entries.value(table, name).is_some() {

@@ -20,8 +20,8 @@ use crate::{
     hop::HopTest,
     path::{Execution, Hop, HopPath, execute},
     planner::{
-        Amount, Budgets, FreeRoute, LabelCap, Objective, RouteError, RouteGap, RouteGoal, RoutePath, RouteQuestion, SearchedCommands,
-        SurfaceLattice, SurfaceNodes, free_route_by,
+        Amount, Budgets, FreeRoute, LabelCap, Objective, RouteError, RouteGap, RouteGoal, RoutePath, RouteQuestion,
+        SearchedCommands, SurfaceLattice, SurfaceNodes, free_route_by,
     },
     progress::Progress,
     quantity::{MapPoint, VertexId},
@@ -65,7 +65,9 @@ pub enum FreeRouteError {
         hop: usize,
     },
     /// Two stops of a mission at one place.
-    #[error("{second} is at the same place as {first}, expected different places: a mission begins at its start and visits a target once")]
+    #[error(
+        "{second} is at the same place as {first}, expected different places: a mission begins at its start and visits a target once"
+    )]
     SameStop {
         /// The first of them.
         first: String,

@@ -17,12 +17,7 @@ struct Tried {
 impl Tried {
     fn record(&self) -> RequireTry {
         let (verdict, lower_bound) = self.route.verdict();
-        RequireTry {
-            value: self.value,
-            verdict,
-            lower_bound,
-            upper_bound: self.route.hops(),
-        }
+        RequireTry { value: self.value, verdict, lower_bound, upper_bound: self.route.hops() }
     }
 }
 

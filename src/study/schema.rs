@@ -8,7 +8,8 @@ use crate::{
     report::{
         ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
         MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer,
-        SimulateAnswer, SitesAnswer, SizeAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+        SimulateAnswer, SitesAnswer, SizeAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer,
+        TravelSimulateAnswer,
     },
     scenario::scenario_schema,
 };

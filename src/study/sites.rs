@@ -80,7 +80,10 @@ impl SitesQuestion<'_> {
                     let at = lattice.at(prepared.dem().georeference(), post);
                     Spot { name: "a candidate".to_owned(), end: JourneyEnd::Start, asked: at, post, at }
                 };
-                (1..).zip(posts.filter(|post| hops.usable(*post))).map(|(number, post)| Candidate { number, spot: Ok(spot(post)) }).collect()
+                (1..)
+                    .zip(posts.filter(|post| hops.usable(*post)))
+                    .map(|(number, post)| Candidate { number, spot: Ok(spot(post)) })
+                    .collect()
             }
         }
     }
@@ -111,11 +114,7 @@ impl SitesQuestion<'_> {
 ///
 /// # Errors
 /// [`MapStudyError`].
-pub fn sites(
-    prepared: &PreparedMap,
-    question: &SitesQuestion<'_>,
-    progress: &dyn Progress,
-) -> Result<SitesStudy, MapStudyError> {
+pub fn sites(prepared: &PreparedMap, question: &SitesQuestion<'_>, progress: &dyn Progress) -> Result<SitesStudy, MapStudyError> {
     rayon::scope(|_| ranked(prepared, question, progress))
 }
 

@@ -71,7 +71,15 @@ impl Mission {
     /// A path along a chain: flights stay in its vertical plane.
     pub fn along_chain(test: HopTest, path: HopPath, start: Station, goal: Station) -> Self {
         let [start, goal] = [start, goal].map(|station| test.chain().contact_point(&station));
-        Self { ground: MissionGround::Chain(ChainGround::new(test)), path, start, goal, replanning: None, planned_over: None, next: None }
+        Self {
+            ground: MissionGround::Chain(ChainGround::new(test)),
+            path,
+            start,
+            goal,
+            replanning: None,
+            planned_over: None,
+            next: None,
+        }
     }
 
     /// A path over a DEM, in any direction: flights follow their heading.

@@ -122,7 +122,8 @@ pub(super) fn fly<G: FirstContact + Windows>(
         ground.realize(realization);
     }
     let biases = rules.errors.begin(draws, trial);
-    let mut journey = Journey { nominal, ground, plan, rules, position: ground.realized(plan.start), hops: 0, stops: 0, before: 0, used_kg: 0.0 };
+    let mut journey =
+        Journey { nominal, ground, plan, rules, position: ground.realized(plan.start), hops: 0, stops: 0, before: 0, used_kg: 0.0 };
     let outcome = loop {
         let drawn = rules.errors.draw(draws, &biases);
         let command = match journey.decide_over_stops(&drawn) {

@@ -46,7 +46,8 @@ fn the_best_order_is_planned_with_every_leg_and_flown_as_a_whole() {
     let visits = answer["visits"].as_array().unwrap();
     let path = answer["path"].as_array().unwrap();
     let sum = |of: &str| visits.iter().map(|visit| visit["leg"][of].as_f64().unwrap()).sum::<f64>();
-    for (name, total) in [("mission_time_s", "mission_time_s"), ("energy_j_kg", "energy_j_kg"), ("distance_m", "ground_distance_m")] {
+    for (name, total) in [("mission_time_s", "mission_time_s"), ("energy_j_kg", "energy_j_kg"), ("distance_m", "ground_distance_m")]
+    {
         let total = answer["totals"][total].as_f64().unwrap();
         assert!((sum(name) - total).abs() < 1e-9 * total, "{name}: {} and {total}", sum(name));
         assert_eq!(visits.last().unwrap()["arrival"][name].as_f64().map(|last| (last - total).abs() < 1e-9 * total), Some(true));
@@ -63,7 +64,8 @@ fn the_best_order_is_planned_with_every_leg_and_flown_as_a_whole() {
     assert!(csv.starts_with("visit,target,hop,") && csv.lines().count() == path.len() + 1, "{csv}");
     assert!(desk.read("path.svg").contains("target 3: visit 3") && desk.read("path.geojson").contains("FeatureCollection"));
     // Without errors every trial flies the whole mission.
-    let flown = desk.json(&["simulate", "mission.toml", "--trials", "20", "--set", "uncertainty.goal_tolerance_m=0.01", "--compare"]);
+    let flown =
+        desk.json(&["simulate", "mission.toml", "--trials", "20", "--set", "uncertainty.goal_tolerance_m=0.01", "--compare"]);
     let reached: Vec<Option<u64>> = flown["visited"].as_array().unwrap().iter().map(|row| row["trials"].as_u64()).collect();
     assert_eq!(reached, [Some(20); 3]);
     for policy in flown["compare"].as_array().unwrap() {
@@ -105,7 +107,10 @@ fn the_largest_set_is_visited_and_the_others_are_said_with_their_reason() {
     let (text, json) = set(&["mission.targets_m=[[27,3],[1,3],[50,3]]"]);
     let (reason, left_out, visited) = why(&json, 2);
     assert_eq!((reason.as_deref(), visited), (Some("not-reached"), Some(2)));
-    assert!(left_out["gap"]["leads_to_goal_nodes"].as_u64() > Some(1) && left_out["nearest_m"][0].as_f64() == Some(12.0), "{left_out}");
+    assert!(
+        left_out["gap"]["leads_to_goal_nodes"].as_u64() > Some(1) && left_out["nearest_m"][0].as_f64() == Some(12.0),
+        "{left_out}"
+    );
     assert!(text.contains("target 2 is left out: it is not reached over these nodes"), "{text}");
 
     // Below the cliff it may end, but not come back.
@@ -131,7 +136,20 @@ fn the_largest_set_is_visited_and_the_others_are_said_with_their_reason() {
 fn require_and_trade_ask_for_all_targets() {
     let desk = desk();
     let key = "hopper.takeoff_speed_max_m_s";
-    let required = desk.json(&["require", "mission.toml", "--vary", key, "--from", "1", "--to", "3", "--resolution", "0.05", "--hops-max", "20"]);
+    let required = desk.json(&[
+        "require",
+        "mission.toml",
+        "--vary",
+        key,
+        "--from",
+        "1",
+        "--to",
+        "3",
+        "--resolution",
+        "0.05",
+        "--hops-max",
+        "20",
+    ]);
     let least = required["reachable_at"].as_f64().unwrap();
     let at = |speed: f64| {
         let set = format!("{key}={speed}");
@@ -151,7 +169,8 @@ fn require_and_trade_ask_for_all_targets() {
 #[test]
 fn trials_fly_the_whole_mission() {
     let desk = desk();
-    let errors = ["--set", "uncertainty.takeoff_speed_sigma_fraction=0.02", "--set", "uncertainty.goal_tolerance_m=0.4", "--trials", "300"];
+    let errors =
+        ["--set", "uncertainty.takeoff_speed_sigma_fraction=0.02", "--set", "uncertainty.goal_tolerance_m=0.4", "--trials", "300"];
     let shares = |more: &[&str]| {
         let answer = desk.json(&[&["simulate", "mission.toml"][..], &errors, more].concat());
         let rows = answer["visited"].as_array().unwrap().clone();

@@ -8,7 +8,7 @@ use std::path::Path;
 use chta::{
     ballistics::TakeoffChoice,
     graph::Effort,
-    ground::{DemGround, Surface},
+    ground::DemGround,
     planner::{
         Amount, Budgets, LabelCap, NodesPerPost, Objective, RouteGoal, RouteQuestion, SearchedCommands, SurfaceLattice,
         SurfaceNodes, Tour, TourQuestion, VisitOrder, free_route, tour,
@@ -32,7 +32,14 @@ fn ground_of(dem: Dem, speed_m_s: f64, gravity_m_s2: f64) -> DemGround {
 
 /// The best of all orders over single free routes, by trying each; `None` where no order visits all.
 fn enumerated(legs: &[Vec<Option<Price>>], order: VisitOrder, returns: bool) -> Option<Price> {
-    fn from(legs: &[Vec<Option<Price>>], at: usize, left: &[usize], so_far: Price, asked: (VisitOrder, bool), best: &mut Option<Price>) {
+    fn from(
+        legs: &[Vec<Option<Price>>],
+        at: usize,
+        left: &[usize],
+        so_far: Price,
+        asked: (VisitOrder, bool),
+        best: &mut Option<Price>,
+    ) {
         let sum = |leg: Price| (so_far.0 + leg.0, so_far.1 + leg.1);
         if left.is_empty() {
             let whole = if asked.1 { legs[at][0].map(sum) } else { Some(so_far) };

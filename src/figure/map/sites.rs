@@ -1,4 +1,4 @@
-//! Landing sites: the candidates over a hillshade, coloured by the share that each reaches.
+//! Landing sites: the candidates over a hillshade, coloured by what ranks them.
 
 use plotters::style::RGBColor;
 
@@ -27,14 +27,14 @@ const RADIUS_MM: f64 = 1.3;
 const MANY: usize = 400;
 
 /// A candidate as it is drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SiteMark {
     /// Its place.
     pub at: MapPoint,
-    /// Its rank, from 1.
-    pub rank: usize,
-    /// The share of the nodes that it reaches; `None` where no hop begins.
-    pub share: Option<f64>,
+    /// The value that it is coloured by; `None` where no hop begins.
+    pub value: Option<f64>,
+    /// What is written beside it, if it is one of the best.
+    pub name: String,
 }
 
 /// The picture of landing sites.
@@ -46,6 +46,8 @@ pub struct SitesFigure<'a> {
     pub dem: &'a Dem,
     /// The candidates, best first.
     pub sites: Vec<SiteMark>,
+    /// What they are coloured by, with its unit.
+    pub value_name: String,
     /// The targets.
     pub targets: Vec<MapPoint>,
 }
@@ -61,18 +63,19 @@ pub fn draw_sites(figure: &SitesFigure<'_>) -> Result<Picture, FigureError> {
     let pixels = raster::draw(figure.dem, &window, &[GROUND], |_, _| Some((0, Pattern::Plain)));
     let map = MapPanel::new(figure.dem, &window, top_mm);
     let end_mm = map.draw(&mut sheet, pixels);
-    let percent = |site: &SiteMark| site.share.map(|share| 100.0 * share);
-    let values = || figure.sites.iter().filter_map(percent);
+    let values = || figure.sites.iter().filter_map(|site| site.value);
     let steps = Steps::between(values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     let tones = steps.tones();
     let shown: Vec<&SiteMark> = figure.sites.iter().filter(|site| map.shows(site.at)).collect();
     let radius_mm = if shown.len() > MANY { 0.55 * RADIUS_MM } else { RADIUS_MM };
     // The best are drawn last, over the others.
-    for site in shown.iter().rev() {
-        let tone = percent(site).and_then(|value| steps.class(value)).map_or(NOT_REACHED, |class| tones[class]);
-        dot(&mut sheet, map.place(site.at), radius_mm, tone);
+    for (number, site) in shown.iter().enumerate().rev() {
+        let tone = site.value.and_then(|value| steps.class(value)).map_or(NOT_REACHED, |class| tones[class]);
+        let larger = if number < NAMED && site.value.is_some() { 1.5 } else { 1.0 };
+        dot(&mut sheet, map.place(site.at), larger * radius_mm, tone);
     }
     let mut taken = Taken::default();
+    taken.spared.extend(shown.iter().map(|site| map.place(site.at)));
     for target in figure.targets.iter().filter(|at| map.shows(**at)) {
         goal_symbol(&mut sheet, map.place(*target));
         taken.kept.push(Bounds::around(map.place(*target), MARKER_MM));
@@ -80,15 +83,14 @@ pub fn draw_sites(figure: &SitesFigure<'_>) -> Result<Picture, FigureError> {
     for (number, target) in (1..).zip(&figure.targets).filter(|(_, at)| map.shows(**at)) {
         map.name(&mut sheet, *target, &format!("target {number}"), &mut taken);
     }
-    for site in shown.iter().filter(|site| site.share.is_some()).take(NAMED) {
-        let text = format!("{}: {:.0} %", site.rank, 100.0 * site.share.unwrap_or(0.0));
-        map.name(&mut sheet, site.at, &text, &mut taken);
+    for site in shown.iter().filter(|site| site.value.is_some()).take(NAMED) {
+        map.name(&mut sheet, site.at, &site.name, &mut taken);
     }
-    let legend = "Colours: share of the nodes that is reached from a candidate (%); numbers: the best candidates";
-    let end_mm = paragraph(&mut sheet, legend, TEXT_MM, false, end_mm + 0.5);
+    let legend = format!("Colours: {}; numbers: ranks of the best candidates, which are larger", figure.value_name);
+    let end_mm = paragraph(&mut sheet, &legend, TEXT_MM, false, end_mm + 0.5);
     let mut entries: Vec<_> = steps.texts().into_iter().zip(&tones).map(|(text, tone)| (Swatch::Fill(*tone), text)).collect();
-    if figure.sites.iter().any(|site| site.share.is_none()) {
-        entries.push((Swatch::Fill(NOT_REACHED), "no hop begins there".to_owned()));
+    if figure.sites.iter().any(|site| site.value.is_none()) {
+        entries.push((Swatch::Fill(NOT_REACHED), "no hop begins there, or none leads to a target".to_owned()));
     }
     if !figure.targets.is_empty() {
         entries.push((Swatch::Symbol(goal_symbol), "target".to_owned()));

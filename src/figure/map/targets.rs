@@ -144,7 +144,7 @@ impl TargetsFigure<'_> {
     #[expect(clippy::cast_precision_loss, reason = "a few columns")]
     fn table(&self, sheet: &mut Sheet, top_mm: f64) -> f64 {
         /// Where the numbers begin.
-        const FIRST_MM: f64 = 62.0;
+        const FIRST_MM: f64 = 40.0;
         let mut y = paragraph(sheet, "Visits in their order", SMALL_MM, true, top_mm) + 0.5;
         let step_mm = (RIGHT_MM - FIRST_MM) / self.columns.len().max(1) as f64;
         let mut row = |name: String, texts: Vec<String>, y: f64| {

@@ -121,12 +121,7 @@ impl<'a> StopLegs<'a> {
     }
 
     /// The best ways from one stop to another: one, or a Pareto set where another amount than that of the objective has a budget.
-    fn ways_between(
-        &self,
-        question: &TourQuestion<'_>,
-        [from, to]: [usize; 2],
-        field: &FewestHops,
-    ) -> Result<Ways, Cancelled> {
+    fn ways_between(&self, question: &TourQuestion<'_>, [from, to]: [usize; 2], field: &FewestHops) -> Result<Ways, Cancelled> {
         let (start, goal) = (self.stops[from].0, self.stops[to]);
         if field.of(start).is_none() {
             return Ok(Ways::default());
@@ -154,11 +149,7 @@ impl<'a> StopLegs<'a> {
     }
 
     /// The mission over these legs, and the hops that it depends on.
-    pub(super) fn best(
-        &self,
-        all: &AllLegs,
-        question: &TourQuestion<'_>,
-    ) -> Result<(Tour, Vec<[SurfaceNode; 2]>), RouteError> {
+    pub(super) fn best(&self, all: &AllLegs, question: &TourQuestion<'_>) -> Result<(Tour, Vec<[SurfaceNode; 2]>), RouteError> {
         let RouteQuestion { objective, budgets, cap, .. } = question.route;
         let rules = VisitRules { order: question.order, returns: question.returns, allowed: u16::MAX };
         let (visits, capped) = most_visits(&all.costs, rules, (objective, budgets, cap))?;
@@ -181,12 +172,7 @@ impl<'a> StopLegs<'a> {
     }
 
     /// Says of every target that is not visited why.
-    fn explain(
-        &self,
-        (all, visits): (&AllLegs, &Visits),
-        question: &TourQuestion<'_>,
-        tour: &mut Tour,
-    ) -> Result<(), RouteError> {
+    fn explain(&self, (all, visits): (&AllLegs, &Visits), question: &TourQuestion<'_>, tour: &mut Tour) -> Result<(), RouteError> {
         let set = visits.set();
         let left_out: Vec<usize> = (1..=self.targets()).filter(|target| set & (1 << (target - 1)) == 0).collect();
         let mut without_budgets: Option<AllLegs> = None;
@@ -204,13 +190,14 @@ impl<'a> StopLegs<'a> {
             } else if !self.is_possible(all, question, set | (1 << (target - 1)))? {
                 WhyLeftOut::NotTogether
             } else {
-                let free = match &without_budgets {
-                    Some(known) => known,
-                    None => without_budgets.insert(self.all(&TourQuestion {
-                        route: RouteQuestion { budgets: &Budgets::NONE, ..question.route },
-                        ..*question
-                    })?),
-                };
+                let free =
+                    match &without_budgets {
+                        Some(known) => known,
+                        None => without_budgets.insert(self.all(&TourQuestion {
+                            route: RouteQuestion { budgets: &Budgets::NONE, ..question.route },
+                            ..*question
+                        })?),
+                    };
                 WhyLeftOut::Budgets(self.over_budgets(free, question, set | (1 << (target - 1)))?)
             };
             tour.left_out.push((target, why));

@@ -168,16 +168,16 @@ pub(super) fn most_visits(
         let Some(set) = table.ends_with(table.state(node)) else { continue };
         for label in run.labels.of_node(node) {
             let (count, totals) = (set.count_ones(), &run.labels.totals(label)[..compared]);
-            let is_better = best.is_none_or(|(most, least, _)| {
-                count > most || (count == most && by_objective(totals, least).is_lt())
-            });
+            let is_better =
+                best.is_none_or(|(most, least, _)| count > most || (count == most && by_objective(totals, least).is_lt()));
             if is_better {
                 best = Some((count, totals, label));
             }
         }
     }
     let path = best.map(|(_, _, label)| run.path(label)).transpose()?;
-    let visits = path.map_or_else(|| Visits { stops: vec![0], ways: Vec::new(), totals: Amounts::NONE }, |path| table.visits(&path));
+    let visits =
+        path.map_or_else(|| Visits { stops: vec![0], ways: Vec::new(), totals: Amounts::NONE }, |path| table.visits(&path));
     Ok((visits, run.labels.capped))
 }
 
@@ -196,7 +196,12 @@ impl Table<'_> {
 }
 
 /// The fewest hops with which all targets can be visited, if no leg takes fewer than these; `None` if that is not known of every leg.
-pub fn fewest_hops_of_visits(hops: &dyn Fn([usize; 2]) -> Option<u64>, targets: usize, order: VisitOrder, returns: bool) -> Option<u64> {
+pub fn fewest_hops_of_visits(
+    hops: &dyn Fn([usize; 2]) -> Option<u64>,
+    targets: usize,
+    order: VisitOrder,
+    returns: bool,
+) -> Option<u64> {
     let mut costs = LegCosts::none(targets);
     for (from, to) in (0..=targets).flat_map(|from| (0..=targets).map(move |to| (from, to))).filter(|(from, to)| from != to) {
         #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]

@@ -64,7 +64,8 @@ impl PreparedMap {
     pub fn new(question: &MapQuestion<'_>) -> Result<Self, MapStudyError> {
         let MapQuestion { scenario, base, dem: file, stride, .. } = question;
         let aim = question.aim()?;
-        if question.starts.is_empty() && !question.ranks_sites {
+        // Single hops need no start.
+        if question.starts.is_empty() && !question.ranks_sites && !question.mobility {
             return Err(MapStudyError::NoStart);
         }
         if let Some(allowed_bytes) = question.memory_max_bytes {

@@ -23,7 +23,7 @@ pub struct MapQuestion<'a> {
     pub base: &'a Path,
     /// The DEM's file.
     pub dem: &'a Path,
-    /// The starts, at least one unless sites are ranked. A post is reached from the nearest of them.
+    /// The starts, at least one unless sites are ranked or single hops are asked for. A post is reached from the nearest of them.
     pub starts: Vec<NamedPlace>,
     /// The goals, whose paths are planned and flown again.
     pub goals: Vec<NamedPlace>,

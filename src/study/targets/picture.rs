@@ -40,10 +40,10 @@ impl TargetsPlanned {
             ("hops", ""),
             ("distance", "m"),
             ("energy", "J/kg"),
-            ("mission time", "s"),
+            ("time", "s"),
             ("hops so far", ""),
             ("energy so far", "J/kg"),
-            ("time at arrival", "s"),
+            ("at arrival", "s"),
         ];
         draw_targets(&TargetsFigure {
             caption: Caption {

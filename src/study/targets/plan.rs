@@ -264,9 +264,8 @@ fn hops(search: &TargetsSearch, tour: &Tour, legs: &[FlownLeg], path: Option<&Ho
     let Some(path) = path else { return Vec::new() };
     let rows = HopRecord::rows(path, search.free.case.prepared.projection.as_ref());
     let of_legs = tour.legs.iter().zip(legs).enumerate();
-    let stops = of_legs.flat_map(|(number, (leg, flown))| {
-        std::iter::repeat_n((number + 1, (leg.to > 0).then_some(leg.to)), flown.hops().len())
-    });
+    let stops = of_legs
+        .flat_map(|(number, (leg, flown))| std::iter::repeat_n((number + 1, (leg.to > 0).then_some(leg.to)), flown.hops().len()));
     rows.into_iter().zip(stops).map(|(hop, (visit, target))| TargetHopRecord { visit, target, hop }).collect()
 }
 
@@ -281,7 +280,8 @@ fn why_record(why: &WhyLeftOut, scenario: &Scenario) -> LeftOutRecord {
         WhyLeftOut::NoWayBack => of(WhyRecord::NoWayBack),
         WhyLeftOut::NotTogether => of(WhyRecord::NotTogether),
         WhyLeftOut::Budgets(over) => {
-            let row = |over: &crate::planner::OverBudget| OverBudgetRecord { amount: over.amount, total: over.total, max: over.most };
+            let row =
+                |over: &crate::planner::OverBudget| OverBudgetRecord { amount: over.amount, total: over.total, max: over.most };
             LeftOutRecord { over: over.iter().map(row).collect(), ..of(WhyRecord::Budgets) }
         }
     }

@@ -87,11 +87,7 @@ pub fn targets_simulate(
 }
 
 /// The share of trials that reach each stop, under the policy of the scenario.
-fn visited(
-    planned: &TargetsPlanned,
-    policies: &[(Policy, Vec<u64>)],
-    simulation: Option<&SimulationRecord>,
-) -> Vec<VisitedRecord> {
+fn visited(planned: &TargetsPlanned, policies: &[(Policy, Vec<u64>)], simulation: Option<&SimulationRecord>) -> Vec<VisitedRecord> {
     let Some(record) = simulation else { return Vec::new() };
     let counts = policies.iter().find(|(policy, _)| *policy == record.policy).map_or(&[][..], |(_, counts)| counts);
     let row = |(leg, count): (&crate::planner::TourLeg, &u64)| {
