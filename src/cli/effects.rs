@@ -161,6 +161,7 @@ impl Purpose {
             ("hopper", "propellant_max_kg") => self.counts_propellant() || by_objective,
             ("hopper", "takeoff_angle_step_deg" | "heading_step_deg") => self.flies_commands(),
             ("terrain", "dem" | "start_m" | "start_lonlat_deg" | "goal_m" | "goal_lonlat_deg")
+            | ("mission", "targets_m" | "targets_lonlat_deg")
                 if self.scenario_ends() != ScenarioEnds::Ignored =>
             {
                 true
@@ -196,7 +197,6 @@ impl Purpose {
             ("search", "risk" | "risk_extra_hops_max") => by_risk,
             ("budget", "estimated_success_min") => by_risk || matches!(self, Self::Require | Self::Trade),
             ("budget", _) | ("search", "objective") => self.plans_by_objective(),
-            ("mission", "targets_m" | "targets_lonlat_deg") if self.scenario_ends() != ScenarioEnds::Ignored => true,
             ("mission", _) => {
                 matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Require | Self::Trade)
             }

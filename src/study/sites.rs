@@ -245,7 +245,9 @@ impl Parts {
             let nodes = found()?;
             #[expect(clippy::cast_possible_truncation, reason = "no more parts than nodes")]
             let number = self.sizes.len() as u32 + 1;
-            nodes.iter().for_each(|node| self.of_node[*node] = number);
+            for node in &nodes {
+                self.of_node[*node] = number;
+            }
             self.of_node[node] = number;
             self.sizes.push(nodes.len().max(1));
         }

@@ -5,7 +5,7 @@ use chta::{
     study::{check, check_pairs},
 };
 
-use super::{check_over_mesh, plan_targets};
+use super::{check_over_mesh, check_targets};
 use crate::cli::{
     Answer, Failure,
     args::CheckArgs,
@@ -29,7 +29,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
     }
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Check, &[])?;
     if loaded.case.scenario.mission.is_some() {
-        return plan_targets::check(args, &loaded);
+        return check_targets::run(args, &loaded);
     }
     let pairs = args.pairs.as_deref().map(read_pairs).transpose()?;
     pairs.is_none().then(|| loaded.ends()).transpose()?;

@@ -4,6 +4,7 @@ pub(super) mod arena;
 pub(super) mod bodies;
 pub(super) mod check;
 mod check_over_mesh;
+mod check_targets;
 pub(super) mod compare;
 pub(super) mod completions;
 pub(super) mod fan;

@@ -198,7 +198,7 @@ impl<'a> StopLegs<'a> {
                             ..*question
                         })?),
                     };
-                WhyLeftOut::Budgets(self.over_budgets(free, question, set | (1 << (target - 1)))?)
+                WhyLeftOut::Budgets(Self::over_budgets(free, question, set | (1 << (target - 1)))?)
             };
             tour.left_out.push((target, why));
         }
@@ -234,7 +234,7 @@ impl<'a> StopLegs<'a> {
     }
 
     /// By how much the best mission over a set of targets exceeds the budgets.
-    fn over_budgets(&self, free: &AllLegs, question: &TourQuestion<'_>, set: u16) -> Result<Vec<OverBudget>, Cancelled> {
+    fn over_budgets(free: &AllLegs, question: &TourQuestion<'_>, set: u16) -> Result<Vec<OverBudget>, Cancelled> {
         let RouteQuestion { objective, budgets, cap, .. } = question.route;
         let rules = VisitRules { order: question.order, returns: question.returns, allowed: set };
         let (visits, _) = most_visits(&free.costs, rules, (objective, &Budgets::NONE, cap))?;

@@ -145,8 +145,8 @@ impl TargetsPlanned {
     }
 
     /// What the mission takes; `None` if no target is visited.
-    pub(in crate::study) fn totals_record(&self) -> Option<TotalsRecord> {
-        self.answer.totals.clone()
+    pub(in crate::study) const fn totals_record(&self) -> Option<TotalsRecord> {
+        self.answer.totals
     }
 }
 

@@ -26,7 +26,7 @@ pub struct TargetsSimulated {
 /// Counts, by policy, the trials that reach each stop, and passes all on.
 struct Stops<'o> {
     policies: Vec<(Policy, Vec<u64>)>,
-    stops: usize,
+    count: usize,
     then: &'o mut dyn Observer,
 }
 
@@ -36,7 +36,7 @@ impl Observer for Stops<'_> {
     }
 
     fn begin(&mut self, policy: Policy) {
-        self.policies.push((policy, vec![0; self.stops]));
+        self.policies.push((policy, vec![0; self.count]));
         self.then.begin(policy);
     }
 
@@ -67,7 +67,7 @@ pub fn targets_simulate(
     let policies = if options.compare { Policy::ALL.to_vec() } else { vec![keys.policy] };
     let mut warnings = planned.warnings.clone();
     let mut records = Vec::new();
-    let mut stops = Stops { policies: Vec::new(), stops: planned.legs.len(), then: observer };
+    let mut stops = Stops { policies: Vec::new(), count: planned.legs.len(), then: observer };
     if let Some(path) = planned.path() {
         let ground = TrialGround::of_chain(&scenario, &planned.case.prepared, path.hops.len());
         warnings.extend(scenario.trial_warnings(&policies, &ground));
