@@ -2,6 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 #![allow(clippy::print_stderr, reason = "skipped tests say why")]
+#![allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "small counts of hops and posts"
+)]
 
 use std::path::Path;
 
