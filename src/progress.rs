@@ -67,6 +67,8 @@ pub enum Stage {
     ReturnLayers,
     /// The mobility of every post; counted in blocks of posts.
     Mobility,
+    /// The ranking of landing sites; counted in candidates.
+    Sites,
     /// Slices in all directions; counted in headings.
     Fan,
     /// Trials of a mission; counted in trials.
@@ -84,7 +86,7 @@ const PAIRS: &str = "pairs";
 
 impl Stage {
     /// All of them.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Search,
         Self::Reachability,
         Self::CostToGo,
@@ -94,6 +96,7 @@ impl Stage {
         Self::MapLayers,
         Self::ReturnLayers,
         Self::Mobility,
+        Self::Sites,
         Self::Fan,
         Self::Trials,
         Self::Trade,
@@ -113,6 +116,7 @@ impl Stage {
             Self::MapLayers => "hop map",
             Self::ReturnLayers => "return hop map",
             Self::Mobility => "mobility map",
+            Self::Sites => "ranking of sites",
             Self::Fan => "fan",
             Self::Trials => "simulation",
             Self::Trade => "trade grid",
@@ -128,6 +132,7 @@ impl Stage {
             Self::Requirement => "values",
             Self::MapLayers | Self::ReturnLayers => "posts",
             Self::Mobility => "blocks",
+            Self::Sites => "candidates",
             Self::Fan => "headings",
             Self::Trials => "trials",
             Self::Trade => "cells",

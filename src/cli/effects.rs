@@ -44,6 +44,11 @@ pub(crate) enum Purpose {
     },
     /// Hops over a mesh.
     MapMesh,
+    /// Landing sites over a DEM.
+    Sites {
+        /// Whether the scenario's own goal, or its targets, count.
+        ends: ScenarioEnds,
+    },
 }
 
 /// What a scenario weighs in the choice of a path.
@@ -88,7 +93,7 @@ impl Weighs {
 
 impl Purpose {
     /// Every purpose, with all that it can compute.
-    const ALL: [Self; 11] = [
+    const ALL: [Self; 12] = [
         Self::Hop,
         Self::Check,
         Self::Plan,
@@ -100,6 +105,7 @@ impl Purpose {
         Self::Fan,
         Self::Map { goals: true, effort: true, amounts: true, trials: true, ends: ScenarioEnds::Ignored },
         Self::MapMesh,
+        Self::Sites { ends: ScenarioEnds::Offered },
     ];
 
     /// The command's name.
@@ -115,13 +121,14 @@ impl Purpose {
             Self::Compare => "compare",
             Self::Fan => "fan",
             Self::Map { .. } | Self::MapMesh => "map",
+            Self::Sites { .. } => "sites",
         }
     }
 
     /// Whether the scenario's own start and goal count beside, or in place of, those of the command line.
     pub(crate) const fn scenario_ends(self) -> ScenarioEnds {
         match self {
-            Self::Map { ends, .. } => ends,
+            Self::Map { ends, .. } | Self::Sites { ends } => ends,
             _ => ScenarioEnds::Ignored,
         }
     }
@@ -130,7 +137,7 @@ impl Purpose {
     /// not.
     fn uses(self, key: &Key, weighs: Weighs) -> bool {
         let Weighs { risk: weighs_risk, success, errors, amounts } = weighs;
-        let on_a_dem = matches!(self, Self::Fan | Self::Map { .. });
+        let on_a_dem = matches!(self, Self::Fan | Self::Map { .. } | Self::Sites { .. });
         let flies = matches!(self, Self::Run | Self::Simulate | Self::Map { trials: true, .. });
         let by_risk = matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Compare);
         let by_objective = amounts != Amounts::None && self.plans_by_objective();
@@ -154,13 +161,14 @@ impl Purpose {
             ("hopper", "propellant_max_kg") => self.counts_propellant() || by_objective,
             ("hopper", "takeoff_angle_step_deg" | "heading_step_deg") => self.flies_commands(),
             ("terrain", "dem" | "start_m" | "start_lonlat_deg" | "goal_m" | "goal_lonlat_deg")
+            | ("mission", "targets_m" | "targets_lonlat_deg")
                 if self.scenario_ends() != ScenarioEnds::Ignored =>
             {
                 true
             }
-            ("terrain", "route") => !matches!(self, Self::Hop | Self::Fan | Self::Map { .. }),
+            ("terrain", "route") => !matches!(self, Self::Hop | Self::Fan | Self::Map { .. } | Self::Sites { .. }),
             ("terrain", name) => !(on_a_dem && gives_way_to_a_dem(name)),
-            ("search", "points_per_segment") => !matches!(self, Self::Hop | Self::Map { .. }),
+            ("search", "points_per_segment") => !matches!(self, Self::Hop | Self::Map { .. } | Self::Sites { .. }),
             ("search", "node_spacing_max_m") => self != Self::Hop,
             // Of free routes over meshes.
             ("search", "planner") => matches!(self, Self::Plan | Self::Run | Self::Simulate | Self::Compare),
@@ -169,11 +177,19 @@ impl Purpose {
             }
             ("search", _) if self == Self::MapMesh => false,
             ("search", "effort" | "takeoff_angle" | "split") if by_objective => true,
-            ("search", "effort") => !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { effort: false, .. }),
+            ("search", "effort") => {
+                !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Sites { .. } | Self::Map { effort: false, .. })
+            }
             ("search", "takeoff_angle" | "split" | "risk" | "risk_extra_hops_max") if by_success => true,
             ("search", "takeoff_angle") => {
                 by_objective
-                    || !matches!(self, Self::Trade | Self::Fan | Self::Map { goals: false, effort: false, amounts: false, .. })
+                    || !matches!(
+                        self,
+                        Self::Trade
+                            | Self::Fan
+                            | Self::Sites { .. }
+                            | Self::Map { goals: false, effort: false, amounts: false, .. }
+                    )
             }
             ("search", "split") => !on_a_dem && !matches!(self, Self::Hop | Self::Trade),
             // A robot that replans over a map weighs it.
@@ -181,6 +197,9 @@ impl Purpose {
             ("search", "risk" | "risk_extra_hops_max") => by_risk,
             ("budget", "estimated_success_min") => by_risk || matches!(self, Self::Require | Self::Trade),
             ("budget", _) | ("search", "objective") => self.plans_by_objective(),
+            ("mission", _) => {
+                matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Require | Self::Trade)
+            }
             ("drive", _) => {
                 matches!(
                     self,
@@ -206,7 +225,7 @@ impl Purpose {
 
     /// Whether its hops have commands in the machine's steps.
     pub(super) const fn flies_commands(self) -> bool {
-        !matches!(self, Self::Hop | Self::Require | Self::Trade | Self::Fan | Self::Map { .. } | Self::MapMesh)
+        !matches!(self, Self::Hop | Self::Require | Self::Trade | Self::Fan | Self::Map { .. } | Self::MapMesh | Self::Sites { .. })
     }
 
     /// Whether its answer is no where the path takes more propellant than the machine has.

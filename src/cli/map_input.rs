@@ -56,17 +56,14 @@ impl MapInput {
             (None, Some([start, _])) if !has_start => vec![of_key("start", *start)],
             _ => of_options("--start", &args.start, &args.start_lonlat),
         };
-        if starts.is_empty() {
+        if starts.is_empty() && !args.asks_for_single_hops() {
             return Err(Failure::message(format!(
                 "{}: found no start, expected one for a map: give --start X,Y, --start-lonlat LON,LAT or --starts FILE, or a scenario whose \
                  [terrain] has a dem with start_m and goal_m",
                 dem.display()
             )));
         }
-        let goals = match &bare.ends {
-            Some([_, goal]) if !has_goal => vec![of_key("goal", *goal)],
-            _ => of_options("--goal", &args.goal, &args.goal_lonlat),
-        };
+        let goals = if has_goal { of_options("--goal", &args.goal, &args.goal_lonlat) } else { goals_of(&bare) };
         if goals.is_empty() {
             without_goal(args)?;
         }
@@ -86,6 +83,7 @@ impl MapInput {
             effort: args.effort.is_some(),
             returns: args.back,
             mobility: args.mobility.is_some(),
+            ranks_sites: false,
             predecessors: args.predecessor_output.is_some(),
             trials: args.simulate,
             hops_max: args.hops_max,
@@ -111,7 +109,7 @@ impl MapInput {
 }
 
 /// The positions of an option in metres, or of its other form in degrees.
-fn of_options(option: &str, metres: &[MapPoint], degrees: &[LonLat]) -> Vec<NamedPlace> {
+pub(crate) fn of_options(option: &str, metres: &[MapPoint], degrees: &[LonLat]) -> Vec<NamedPlace> {
     let places = metres.iter().copied().map(MapPlace::Metres).chain(degrees.iter().copied().map(MapPlace::LonLat));
     places.map(|place| NamedPlace { name: option.to_owned(), place }).collect()
 }
@@ -122,8 +120,19 @@ fn of_key(end: &str, place: MapPlace) -> NamedPlace {
     NamedPlace { name: format!("terrain.{end}_{unit}"), place }
 }
 
+/// The targets of a scenario's mission, or its goal.
+pub(crate) fn goals_of(bare: &Bare) -> Vec<NamedPlace> {
+    match (&bare.scenario.mission, &bare.ends) {
+        (_, None) => Vec::new(),
+        (Some(mission), Some(_)) => {
+            mission.targets.iter().map(|place| NamedPlace { name: "mission.targets_m".to_owned(), place: *place }).collect()
+        }
+        (None, Some([_, goal])) => vec![of_key("goal", *goal)],
+    }
+}
+
 /// The positions of a file.
-fn of_file(file: &Path, warnings: &mut Vec<String>) -> Result<Vec<NamedPlace>, Failure> {
+pub(crate) fn of_file(file: &Path, warnings: &mut Vec<String>) -> Result<Vec<NamedPlace>, Failure> {
     let input = inputs::open(file, Role::Starts)?;
     claims::reads(&input.file);
     let read = read_positions_csv_file(&input.file)?;

@@ -15,11 +15,13 @@ mod landings;
 mod load;
 mod map_input;
 mod map_outputs;
+mod not_for_targets;
 mod not_for_travel;
 mod not_on_mesh;
 mod output;
 mod progress;
 mod run_folder;
+mod sites_input;
 mod threads;
 mod trajectory;
 mod unanswered;
@@ -80,6 +82,7 @@ fn answer_of(command: Command) -> Result<Answer, Failure> {
         Command::Slice(args) => commands::slice::run(&args),
         Command::Fan(args) => commands::fan::run(&args),
         Command::Map(args) => commands::map::run(&args),
+        Command::Sites(args) => commands::sites::run(&args),
         Command::Hop(args) => commands::hop::run(&args),
         Command::Check(args) => commands::check::run(&args),
         Command::Plan(args) => commands::plan::run(&args),

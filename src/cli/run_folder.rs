@@ -8,8 +8,11 @@ use std::{
 use chta::{
     chain::csv::write_chain_csv,
     figure::SeenFrom,
+    path::HopPath,
     report::{CrsRecord, DocumentKind, MapKnowledge, write_path_csv, write_travel_csv},
-    study::{MeshRouted, MeshSimulated, Planned, Simulated, TravelPlanned, TravelSimulated},
+    study::{
+        Case, MeshRouted, MeshSimulated, Planned, Simulated, TargetsPlanned, TargetsSimulated, TravelPlanned, TravelSimulated,
+    },
 };
 
 use super::{
@@ -60,7 +63,17 @@ impl<'a> RunFolder<'a> {
 
     /// Adds the path in time, which has a place of its own.
     pub(crate) fn trajectory(&mut self, file: Option<TrajectoryFile<'a>>, planned: &Planned) -> Result<(), Failure> {
-        self.in_time = file.map(|file| file.filled(planned.path.as_ref(), &planned.case)).transpose()?;
+        self.trajectory_of(file, planned.path.as_ref(), &planned.case)
+    }
+
+    /// The same of a path on the chain of a case.
+    pub(crate) fn trajectory_of(
+        &mut self,
+        file: Option<TrajectoryFile<'a>>,
+        path: Option<&HopPath>,
+        case: &Case,
+    ) -> Result<(), Failure> {
+        self.in_time = file.map(|file| file.filled(path, case)).transpose()?;
         Ok(())
     }
 
@@ -131,6 +144,28 @@ impl<'a> RunFolder<'a> {
     /// Adds the answer of the trials of a mission that drives, and its picture.
     pub(crate) fn trials_of_travel(&mut self, simulated: &TravelSimulated, loaded: &Loaded) -> Result<(), Failure> {
         let document = loaded.document(DocumentKind::SimulateTravel, &simulated.warnings, &simulated.answer)?;
+        self.files.push(("simulation.json", document.into_bytes()));
+        self.files.push((TRIAL_PICTURES[0], output::encoded(simulated.picture(), Path::new(TRIAL_PICTURES[0]))?));
+        Ok(())
+    }
+
+    /// Adds the hops of a mission over targets, the answer and its picture.
+    pub(crate) fn plan_of_targets(&mut self, planned: &TargetsPlanned, loaded: &Loaded) -> Result<(), Failure> {
+        let mut path_csv = Vec::new();
+        planned.write_csv(&mut path_csv).map_err(|error| Failure::message(format!("path.csv: {error}")))?;
+        let result = loaded.document(DocumentKind::PlanTargets, &planned.warnings, &planned.answer)?;
+        self.files.extend([("path.csv", path_csv), (RESULT, result.into_bytes())]);
+        self.files.push((PICTURE, output::encoded(planned.picture(), Path::new(PICTURE))?));
+        if let Some(geojson) = planned.geojson() {
+            self.files.push(("path.geojson", geojson.into_bytes()));
+            self.files.extend(output::prj(planned.case.prepared.projection.as_ref()).map(|text| ("path.prj", text)));
+        }
+        Ok(())
+    }
+
+    /// Adds the answer of the trials of a mission over targets, and its picture.
+    pub(crate) fn trials_of_targets(&mut self, simulated: &TargetsSimulated, loaded: &Loaded) -> Result<(), Failure> {
+        let document = loaded.document(DocumentKind::SimulateTargets, &simulated.warnings, &simulated.answer)?;
         self.files.push(("simulation.json", document.into_bytes()));
         self.files.push((TRIAL_PICTURES[0], output::encoded(simulated.picture(), Path::new(TRIAL_PICTURES[0]))?));
         Ok(())

@@ -130,6 +130,11 @@ impl<'a> Files<'a> {
         Ok(())
     }
 
+    /// Adds a file of these bytes.
+    pub(crate) fn bytes(&mut self, file: Pending<'a>, bytes: Vec<u8>) {
+        self.0.push((file, bytes));
+    }
+
     /// Adds a GeoJSON; without one the file is not written.
     pub(crate) fn geojson(&mut self, file: Option<GeoJsonFile<'a>>, geojson: Option<String>) {
         if let (Some(GeoJsonFile { file, prj }), Some(geojson)) = (file, geojson) {

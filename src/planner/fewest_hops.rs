@@ -36,8 +36,8 @@ pub(super) struct Within<'w> {
     pub(super) most: u64,
     /// The fewest hops between a position and the other end that anything may take.
     pub(super) rest: &'w (dyn Fn(&MapPosition) -> u64 + Sync),
-    /// Whether to end with the level of this node.
-    pub(super) until: Option<SurfaceNode>,
+    /// Whether to end with the level that completes these nodes; of none, never.
+    pub(super) until: &'w [SurfaceNode],
 }
 
 impl Within<'_> {
@@ -76,7 +76,8 @@ impl FewestHops {
         found.hops[end.index()] = 0;
         let mut level = vec![end];
         for hops in 1..UNKNOWN {
-            let is_done = within.until.is_some_and(|until| found.hops[until.index()] != UNKNOWN);
+            let is_known = |node: &SurfaceNode| found.hops[node.index()] != UNKNOWN;
+            let is_done = !within.until.is_empty() && within.until.iter().all(is_known);
             if level.is_empty() || is_done || u64::from(hops) > within.most {
                 break;
             }
@@ -104,6 +105,12 @@ impl FewestHops {
     /// The fewest hops of a node; `None` if none are known.
     pub(super) fn of(&self, node: SurfaceNode) -> Option<u32> {
         self.hops.get(node.index()).copied().filter(|hops| *hops != UNKNOWN)
+    }
+
+    /// The node with hops that is nearest to a position, horizontally.
+    pub(super) fn nearest(&self, surface: &SurfaceHops<'_>, to: &MapPosition) -> Option<MapPosition> {
+        let away = |at: &MapPosition| (at.at - to.at).norm_squared();
+        self.all().filter_map(|node| surface.position(node)).min_by(|a, b| away(a).total_cmp(&away(b)))
     }
 
     /// All nodes with hops.

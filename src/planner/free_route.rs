@@ -4,15 +4,14 @@
 //! objective ([`search`]). Where hops come first, paths of the fewest hops are compared layer by layer instead ([`best_of_fewest`]).
 
 use super::{
-    Amount, Amounts, Budgets, FoundPath, LabelCap, Objective, SearchedCommands, SurfaceNode, SurfaceNodes, TooManyNodes,
-    UnmetBudget,
+    Amount, Amounts, Budgets, LabelCap, Objective, SearchedCommands, SurfaceNode, SurfaceNodes, TooManyNodes, UnmetBudget,
     by_layers::best_of_fewest,
     fewest_hops::{FewestHops, Within},
     front,
     route_gap::RouteGap,
     search::{search, without_budgets},
     surface_hops::{Side, SurfaceHops},
-    surface_legs::{Counted, SurfaceLegs},
+    surface_legs::{Counted, LegOffers, Settling, SurfaceLegs},
 };
 use crate::{
     ballistics::{PathBounds, TakeoffChoice},
@@ -196,7 +195,7 @@ pub fn front_of_routes(
         let budgets = question.budgets.with(Amount::Hops, hops_max as f64).unwrap_or(*question.budgets);
         let legs = asked.legs((&levels, Counted::Known), question);
         let (found, capped) = front(&legs, legs.ends(), (Amount::Hops, amount), &budgets, question.cap)?;
-        let paths = found.iter().map(|path| asked.path(&legs, path)).collect();
+        let paths = found.iter().map(|path| legs.route_path(path, asked.how.effort)).collect();
         let hops: Vec<_> = found.iter().flat_map(SurfaceLegs::hops_of).collect();
         drop(legs);
         if !asked.surface.refuse_wrong(hops) {
@@ -261,7 +260,8 @@ impl<'a> Asked<'a> {
             bounds.hops(run_m, at.z_m - start.1.z_m).unwrap_or(u64::MAX)
         };
         let ends = [start.1.at, self.goal.1.at];
-        let whole = Within { line: None, most: u64::MAX, rest: &rest, until: Some(start.0) };
+        let at_start = [start.0];
+        let whole = Within { line: None, most: u64::MAX, rest: &rest, until: &at_start };
         let mut enough = None;
         for half_width in HALF_WIDTHS {
             let line = Some((ends, half_width * self.surface.level_m()));
@@ -272,7 +272,7 @@ impl<'a> Asked<'a> {
                 break;
             }
         }
-        let until = if most.is_some() { None } else { Some(start.0) };
+        let until: &[SurfaceNode] = if most.is_some() { &[] } else { &at_start };
         let within = Within { most: enough.map_or(u64::MAX, |enough| enough.max(most.unwrap_or(0))), until, ..whole };
         let found = FewestHops::from(&self.surface, (Side::Goal, self.goal.0), &within, &self.meter)?;
         self.pairs += found.pairs;
@@ -281,7 +281,9 @@ impl<'a> Asked<'a> {
 
     fn legs<'l>(&'l self, (levels, counted): (&'l FewestHops, Counted), question: &RouteQuestion<'_>) -> SurfaceLegs<'l> {
         let offered = (question.commands, self.how.takeoff);
-        SurfaceLegs::new(&self.surface, (self.start.0, self.goal), offered, question.errors, (levels, counted), &self.meter)
+        let settling = Settling::BeforeAllBut(self.start.0);
+        let hops = LegOffers::new(&self.surface, settling, offered, question.errors);
+        SurfaceLegs::new(hops, (self.start.0, self.goal), (levels, counted), &self.meter)
     }
 
     /// The answer where a path of so many hops exists, and the hops that it depends on.
@@ -307,7 +309,7 @@ impl<'a> Asked<'a> {
             };
             (work.reached, work.settled, capped) = (result.reached, result.settled, result.capped);
             work.pairs_tested += legs.pairs();
-            best = result.path.map(|path| (self.path(&legs, &path), path, Vec::new()));
+            best = result.path.map(|path| (legs.route_path(&path, self.how.effort), path, Vec::new()));
         }
         let mut within = best.is_some();
         if !within {
@@ -318,7 +320,7 @@ impl<'a> Asked<'a> {
                 within = found.within;
                 capped |= found.capped;
                 (work.reached, work.settled) = found.work;
-                best = Some((self.path(&legs, &found.path), found.path, found.unmet));
+                best = Some((legs.route_path(&found.path, self.how.effort), found.path, found.unmet));
             }
         }
         let (path, hops, unmet) = match best {
@@ -328,32 +330,15 @@ impl<'a> Asked<'a> {
         Ok((FreeRoute { path, within, unmet, capped, nearest: self.goal.1, gap: None, work }, hops))
     }
 
-    /// The places, commands and totals of a path.
-    fn path(&self, legs: &SurfaceLegs<'_>, path: &FoundPath) -> RoutePath {
-        let ends = SurfaceLegs::hops_of(path).map(|[_, to]| to);
-        let places = std::iter::once(self.start.0).chain(ends).filter_map(|node| self.surface.position(node)).collect();
-        let arcs = path.steps.iter().filter_map(|step| legs.arc(step));
-        RoutePath {
-            places,
-            choices: path.steps.iter().map(|step| legs.offers.choice(step.command)).collect(),
-            cost: arcs.fold(Cost::default(), |cost, arc| cost + self.how.effort.cost(&arc, 1)),
-            totals: path.totals,
-        }
-    }
-
     /// The answer without a path, where all nodes that lead to the goal are known.
     fn not_found(&mut self, leading: &FewestHops) -> Result<FreeRoute, RouteError> {
-        let all = Within { line: None, most: u64::MAX, rest: &|_| 0, until: None };
+        let all = Within { line: None, most: u64::MAX, rest: &|_| 0, until: &[] };
         let reached = FewestHops::from(&self.surface, (Side::Start, self.start.0), &all, &self.meter)?;
         self.pairs += reached.pairs;
-        let nearest = |of: &FewestHops, to: MapPosition| {
-            let away = |at: &MapPosition| (at.at - to.at).norm_squared();
-            of.all().filter_map(|node| self.surface.position(node)).min_by(|a, b| away(a).total_cmp(&away(b)))
-        };
         let gap = RouteGap::between(
             &self.surface,
             (&reached, leading),
-            nearest(leading, self.start.1).unwrap_or(self.goal.1),
+            leading.nearest(&self.surface, &self.start.1).unwrap_or(self.goal.1),
             &self.meter,
         )?;
         let work = RouteWork { pairs_tested: self.pairs, leading: leading.known, reached: reached.known, settled: 0 };
@@ -362,7 +347,7 @@ impl<'a> Asked<'a> {
             within: false,
             unmet: Vec::new(),
             capped: false,
-            nearest: nearest(&reached, self.goal.1).unwrap_or(self.start.1),
+            nearest: reached.nearest(&self.surface, &self.goal.1).unwrap_or(self.start.1),
             gap: Some(gap),
             work,
         })

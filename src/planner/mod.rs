@@ -35,6 +35,7 @@ mod stances;
 mod surface_hops;
 mod surface_legs;
 mod table_hops;
+mod tour;
 mod travel;
 
 pub use amount::{Amount, Amounts};
@@ -52,6 +53,7 @@ pub use route_gap::RouteGap;
 pub use search::{FoundPath, LabelCap, LegGraph, LegVisitor, PathStep, SearchResult, Successor, UnmetBudget, search};
 pub use stances::{RefusedStances, StanceSampler};
 pub use surface_legs::SurfaceLegs;
+pub use tour::{TARGETS_MAX, Tour, TourLeg, TourQuestion, TourWork, VisitOrder, WhyLeftOut, fewest_hops_of_visits, tour};
 pub(crate) use travel::drive_amounts;
 pub use travel::{
     Mission, MissionFront, MissionMove, MissionPath, MissionQuestion, MissionWork, Toward, Travel, TravelField, front_of_missions,

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::{
-    Amount, Amounts, FoundPath, LeastAmounts, LegGraph, LegVisitor, PathStep, SearchedCommands, Successor, SurfaceNode,
+    Amount, Amounts, FoundPath, LeastAmounts, LegGraph, LegVisitor, PathStep, RoutePath, SearchedCommands, Successor, SurfaceNode,
     fewest_hops::FewestHops,
     pair_memo::PairMemo,
     surface_hops::{Feasible, Side, SurfaceHops},
@@ -15,7 +15,7 @@ use super::{
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
     flight::Uncertainty,
-    graph::MapJudge,
+    graph::{Cost, Effort, MapJudge},
     ground::{DemGround, MapPosition, Post, Surface},
     progress::{Cancelled, Meter, PairCounter},
     quantity::{MapPoint, SlopeInterval},
@@ -58,6 +58,8 @@ pub(super) enum Settling {
     AfterAllBut(MapPoint),
     /// After every hop.
     AfterAll,
+    /// Before every hop: the first one follows a landing that is not of this path.
+    BeforeAll,
 }
 
 impl Settling {
@@ -66,7 +68,7 @@ impl Settling {
         match self {
             Self::BeforeAllBut(start) => from == start,
             Self::AfterAllBut(goal) => to.at == goal,
-            Self::AfterAll => false,
+            Self::AfterAll | Self::BeforeAll => false,
         }
     }
 
@@ -115,6 +117,7 @@ struct Candidate {
 }
 
 impl<'a> LegOffers<'a> {
+    /// The commands of hops. `errors`: those by which risk is judged, in closed form as on maps; `None` if it does not count, which is faster.
     pub(super) fn new(
         surface: &'a SurfaceHops<'a>,
         settling: Settling,
@@ -314,20 +317,13 @@ impl<'a> LegOffers<'a> {
 }
 
 impl<'a> SurfaceLegs<'a> {
-    /// The graph.
-    ///
-    /// # Arguments
-    /// `errors`: those by which risk is judged, in closed form as on maps; `None` if it does not count, which is faster.
-    /// `hops_left`: the fewest hops to the goal, which decide what nodes are `counted`.
+    /// The graph over these hops. `hops_left`: the fewest hops to the goal, which decide what nodes are `counted`.
     pub(super) fn new(
-        surface: &'a SurfaceHops<'a>,
+        offers: LegOffers<'a>,
         (start, goal): (SurfaceNode, (SurfaceNode, MapPosition)),
-        (offered, takeoff): (SearchedCommands, TakeoffChoice),
-        errors: Option<(&Uncertainty, &DemGround)>,
         (hops_left, counted): (&'a FewestHops, Counted),
         meter: &'a Meter<'_>,
     ) -> Self {
-        let offers = LegOffers::new(surface, Settling::BeforeAllBut(start), (offered, takeoff), errors);
         Self { offers, start, goal, hops_left, counted, counter: RefCell::new(meter.counter()), pairs: RefCell::new(0) }
     }
 
@@ -354,6 +350,19 @@ impl<'a> SurfaceLegs<'a> {
         let hop = self.offers.surface.between(nodes, [&from, &to], self.offers.surface.sight(&from, &to)?)?;
         let envelope = self.offers.surface.ground.envelope();
         Some(Arc::new(hop.sight, envelope.loft(self.offers.choice(step.command), hop.sight, hop.lofts), envelope.gravity_m_s2()))
+    }
+
+    /// The places, commands and totals of a path.
+    pub(super) fn route_path(&self, path: &FoundPath, effort: Effort) -> RoutePath {
+        let ends = Self::hops_of(path).map(|[_, to]| to);
+        let places = std::iter::once(self.start).chain(ends).filter_map(|node| self.offers.surface.position(node)).collect();
+        let arcs = path.steps.iter().filter_map(|step| self.arc(step));
+        RoutePath {
+            places,
+            choices: path.steps.iter().map(|step| self.offers.choice(step.command)).collect(),
+            cost: arcs.fold(Cost::default(), |cost, arc| cost + effort.cost(&arc, 1)),
+            totals: path.totals,
+        }
     }
 
     /// The hops of a path.

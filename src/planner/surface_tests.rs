@@ -4,7 +4,7 @@ use super::{
     by_layers::best_of_fewest,
     fewest_hops::{FewestHops, Within},
     surface_hops::{Side, SurfaceHops},
-    surface_legs::Counted,
+    surface_legs::{Counted, LegOffers, Settling},
     *,
 };
 use crate::{
@@ -63,7 +63,7 @@ impl LegGraph for WithoutBounds<'_> {
 const EVERYWHERE: fn(&MapPosition) -> u64 = |_| 0;
 
 fn all() -> Within<'static> {
-    Within { line: None, most: u64::MAX, rest: &EVERYWHERE, until: None }
+    Within { line: None, most: u64::MAX, rest: &EVERYWHERE, until: &[] }
 }
 
 #[test]
@@ -89,7 +89,8 @@ fn bounds_change_no_best_total() {
             let first = objective.first();
             let searched = |counted, bounded| {
                 let offered = (SearchedCommands::Distinct, TakeoffChoice::LeastSpeed);
-                let legs = SurfaceLegs::new(&surface, (start, goal), offered, None, (&levels, counted), &meter);
+                let offers = LegOffers::new(&surface, Settling::BeforeAllBut(start), offered, None);
+                let legs = SurfaceLegs::new(offers, (start, goal), (&levels, counted), &meter);
                 let (ends, budgets, cap) = (legs.ends(), Budgets::NONE, LabelCap::default());
                 if bounded {
                     search(&legs, ends, &objective, &budgets, cap).unwrap()
@@ -101,7 +102,8 @@ fn bounds_change_no_best_total() {
             let mut others = vec![searched(Counted::All, true), searched(Counted::Known, true)];
             if first == Amount::Hops {
                 let offered = (SearchedCommands::Distinct, TakeoffChoice::LeastSpeed);
-                let legs = SurfaceLegs::new(&surface, (start, goal), offered, None, (&levels, Counted::Known), &meter);
+                let offers = LegOffers::new(&surface, Settling::BeforeAllBut(start), offered, None);
+                let legs = SurfaceLegs::new(offers, (start, goal), (&levels, Counted::Known), &meter);
                 others.push(best_of_fewest(&legs, &levels, (&objective, LabelCap::default()), &meter).unwrap());
             }
             for other in others {

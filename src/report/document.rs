@@ -27,6 +27,8 @@ pub enum DocumentKind {
     PlanLegs,
     /// A path of a scenario that drives: [`TravelAnswer`](super::TravelAnswer).
     PlanTravel,
+    /// A path over several targets: [`TargetsAnswer`](super::TargetsAnswer).
+    PlanTargets,
     /// A path, beside the other files of a run: [`PlanAnswer`](super::PlanAnswer).
     Run,
     /// A path over a mesh, beside the other files of a run: [`MeshPlanAnswer`](super::MeshPlanAnswer).
@@ -39,6 +41,8 @@ pub enum DocumentKind {
     SimulateLegs,
     /// Trials of a mission of a scenario that drives: [`TravelSimulateAnswer`](super::TravelSimulateAnswer).
     SimulateTravel,
+    /// Trials of a mission over several targets: [`TargetsSimulateAnswer`](super::TargetsSimulateAnswer).
+    SimulateTargets,
     /// An experiment with trials: [`ExperimentAnswer`](super::ExperimentAnswer).
     SimulateExperiment,
     /// The least capability: [`RequireAnswer`](super::RequireAnswer).
@@ -55,6 +59,8 @@ pub enum DocumentKind {
     MapMesh,
     /// Missions to all nodes of a map, of a scenario that drives: [`TravelMapAnswer`](super::TravelMapAnswer).
     MapTravel,
+    /// Landing sites ranked: [`SitesAnswer`](super::SitesAnswer).
+    Sites,
     /// What an answer takes before it is computed: [`SizeAnswer`](super::SizeAnswer).
     Size,
     /// Where a robot with legs stands: [`StanceAnswer`](super::StanceAnswer).
@@ -65,7 +71,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 29] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -75,12 +81,14 @@ impl DocumentKind {
         Self::PlanMesh,
         Self::PlanLegs,
         Self::PlanTravel,
+        Self::PlanTargets,
         Self::Run,
         Self::RunMesh,
         Self::Simulate,
         Self::SimulateMesh,
         Self::SimulateLegs,
         Self::SimulateTravel,
+        Self::SimulateTargets,
         Self::SimulateExperiment,
         Self::Require,
         Self::Trade,
@@ -89,6 +97,7 @@ impl DocumentKind {
         Self::Map,
         Self::MapMesh,
         Self::MapTravel,
+        Self::Sites,
         Self::Size,
         Self::Stance,
         Self::Arena,
@@ -106,12 +115,14 @@ impl DocumentKind {
             Self::PlanMesh => "plan-mesh",
             Self::PlanLegs => "plan-legs",
             Self::PlanTravel => "plan-travel",
+            Self::PlanTargets => "plan-targets",
             Self::Run => "run",
             Self::RunMesh => "run-mesh",
             Self::Simulate => "simulate",
             Self::SimulateMesh => "simulate-mesh",
             Self::SimulateLegs => "simulate-legs",
             Self::SimulateTravel => "simulate-travel",
+            Self::SimulateTargets => "simulate-targets",
             Self::SimulateExperiment => "simulate-experiment",
             Self::Require => "require",
             Self::Trade => "trade",
@@ -120,6 +131,7 @@ impl DocumentKind {
             Self::Map => "map",
             Self::MapMesh => "map-mesh",
             Self::MapTravel => "map-travel",
+            Self::Sites => "sites",
             Self::Size => "size",
             Self::Stance => "stance",
             Self::Arena => "arena",

@@ -29,7 +29,7 @@ pub struct MapAnswer {
     pub posts: usize,
     /// Of these, posts without elevation.
     pub no_data_posts: usize,
-    /// The post of the first start.
+    /// The post of the first start; [0, 0] where there is none, as of a map of single hops alone.
     pub start_m: [f64; 2],
     /// Its distance from the requested position.
     pub start_offset_m: f64,
@@ -287,9 +287,16 @@ impl MapAnswer {
         self.goals.iter().all(|goal| goal.hops.is_some() && goal.propellant_shortage.is_none())
     }
 
-    /// The answer as text.
-    pub fn text(&self) -> String {
+    /// What is reached from where; without a start that there is none.
+    fn reached_text(&self) -> String {
         let node = self.node();
+        if self.starts.is_empty() {
+            let ground = self.posts - self.no_data_posts;
+            return format!(
+                "{} {node}s, {ground} with an elevation; single hops from each, and no start from which any is reached\n",
+                self.posts
+            );
+        }
         let mut text = format!(
             "{} of {} {node}s reachable from {}, {:.6} km2, {} at most {}\n",
             self.reachable_posts,
@@ -318,6 +325,13 @@ impl MapAnswer {
             }
             let _ = writeln!(text, "{beside}");
         }
+        text
+    }
+
+    /// The answer as text.
+    pub fn text(&self) -> String {
+        let node = self.node();
+        let mut text = self.reached_text();
         if self.nodes_per_post > 1 {
             let _ = writeln!(text, "nodes: {} for each post spacing", self.nodes_per_post);
         }

@@ -34,10 +34,13 @@ mod route_record;
 mod sensitivity_answer;
 mod sigma_margins;
 mod simulate_answer;
+mod sites_answer;
 mod size_answer;
 mod stance_answer;
 mod stated;
 mod success_record;
+mod targets_answer;
+mod targets_text;
 mod text;
 mod trade_answer;
 mod trajectory;
@@ -101,6 +104,7 @@ pub use simulate_answer::{
     EllipseRecord, ErrorRecord, FailureRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord,
     SuccessRequirement, simulate_text,
 };
+pub use sites_answer::{SiteRecord, SitesAnswer};
 pub use size_answer::{SizeAnswer, SizeRecord};
 pub use stance_answer::{
     BeamRecord, ElevationRecord, FootRecord, PoseRecord, RoseRecord, StanceAnswer, TriedPoses, heading_of, stance_text,
@@ -108,6 +112,11 @@ pub use stance_answer::{
 pub use success_record::{
     FrontRecord, FrontSearchRecord, FrontSuccess, SuccessBudgetRecord, amount_front_text, estimate_ci95, front_text,
 };
+pub use targets_answer::{
+    LeftOutRecord, OverBudgetRecord, TargetHopRecord, TargetRecord, TargetsAnswer, TargetsSearchRecord, TargetsSimulateAnswer,
+    TripRecord, VisitRecord, VisitedRecord, WhyRecord, write_target_hops_csv,
+};
+pub use targets_text::{targets_simulate_text, targets_text};
 pub use text::{FurtherMeans, check_text, hop_text, path_text};
 pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow, with_unit};
 pub use trajectory::{trajectory_columns, write_trajectory_csv};

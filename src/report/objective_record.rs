@@ -146,7 +146,7 @@ fn keeps(amount: Amount, total: f64, most: f64) -> bool {
 }
 
 /// A total with its unit.
-fn with_unit(amount: Amount, total: f64) -> String {
+pub(super) fn with_unit(amount: Amount, total: f64) -> String {
     let number = if amount == Amount::Hops { format_number(total) } else { format!("{total:.4}") };
     if amount.unit().is_empty() { number } else { format!("{number} {}", amount.unit()) }
 }

@@ -116,27 +116,41 @@ impl RouteRecord {
             place(self.nearest_m)
         )];
         let Some(gap) = &self.gap else { return said };
-        said.push(format!(
-            "the goal can be reached from {} of these nodes, of which {} is nearest to the start",
-            gap.leads_to_goal_nodes,
-            place(gap.leads_to_goal_from_m)
-        ));
-        said.extend(isolated_ends([self.reached_nodes, gap.leads_to_goal_nodes], "nodes"));
-        said.push(match gap.width_m {
+        said.extend(gap.of_ends(self.reached_nodes));
+        said.extend(gap.sentences(means));
+        said
+    }
+}
+
+impl RouteGapRecord {
+    /// How many nodes lead to the goal, and what is said if none does but the goal, or if the start reaches nothing.
+    fn of_ends(&self, reached_nodes: usize) -> Vec<String> {
+        let [x_m, y_m, _] = self.leads_to_goal_from_m;
+        let mut said = vec![format!(
+            "the goal can be reached from {} of these nodes, of which ({x_m:.3}, {y_m:.3}) m is nearest to the start",
+            self.leads_to_goal_nodes
+        )];
+        said.extend(isolated_ends([reached_nodes, self.leads_to_goal_nodes], "nodes"));
+        said
+    }
+
+    /// How wide it is, what refuses the hops across it, and which keys may close it, a sentence a line.
+    pub(super) fn sentences(&self, means: FurtherMeans<'_>) -> Vec<String> {
+        let mut said = vec![match self.width_m {
             None => "none of these is as near to a reached place as one hop by its speeds: the gap is wider than a hop".to_owned(),
             Some(width_m) => {
-                let missing = (gap.without_ground > 0).then(|| format!("missing elevations {}", gap.without_ground));
-                let by_limit = gap.refusals.ranked().into_iter().map(|(limit, count)| format!("{limit} {count}"));
+                let missing = (self.without_ground > 0).then(|| format!("missing elevations {}", self.without_ground));
+                let by_limit = self.refusals.ranked().into_iter().map(|(limit, count)| format!("{limit} {count}"));
                 let refused: Vec<String> = by_limit.chain(missing).collect();
                 format!(
                     "the gap is {width_m:.3} m wide; of {} hops across it {} were judged, refused by {}",
-                    gap.pairs,
-                    gap.judged_pairs,
+                    self.pairs,
+                    self.judged_pairs,
                     refused.join(", ")
                 )
             }
-        });
-        if let Some((first, others)) = gap.keys.split_first() {
+        }];
+        if let Some((first, others)) = self.keys.split_first() {
             let others = if others.is_empty() { String::new() } else { format!(" (or of {})", others.join(", ")) };
             said.push(format!("whether another value of {first} closes the gap is found by {} {first}{others}", means.requirement));
         }

@@ -6,7 +6,7 @@ use crate::{
     graph::{Effort, ReliabilityUse},
     ground::StandsUp,
     hop::Split,
-    planner::{Amount, Objective, Travel, roadmap::RoadmapPlanner},
+    planner::{Amount, Objective, Travel, VisitOrder, roadmap::RoadmapPlanner},
     uncertainty::{Distribution, Policy},
     world::{ClearanceRule, LandingMode, RESTITUTION_MAX, SpeedLevels},
 };
@@ -205,12 +205,14 @@ const CONES: [&str; 6] = [
 const UPS: [&str; 2] = [StandsUp::ALL[0].name(), StandsUp::ALL[1].name()];
 const PLANNERS: [&str; 2] = [RoadmapPlanner::ALL[0].name(), RoadmapPlanner::ALL[1].name()];
 const TRAVELS: [&str; 3] = [Travel::ALL[0].name(), Travel::ALL[1].name(), Travel::ALL[2].name()];
+/// Orders of visits.
+const ORDERS: [&str; VisitOrder::ALL.len()] = [VisitOrder::ALL[0].name(), VisitOrder::ALL[1].name()];
 const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
 
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 123] = [
+pub const CATALOGUE: [Key; 127] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -634,6 +636,10 @@ pub const CATALOGUE: [Key; 123] = [
     ),
     key("uncertainty", "trials", Kind::Count { min: 1, max: MOST }, "how many trials; absent: 10000"),
     key("uncertainty", "seed", Kind::Count { min: 0, max: MOST }, "seed of all draws; absent: 0"),
+    key("mission", "targets_m", Kind::MapPoints, "targets to visit, [[x, y], ...], m, at most 12; on a dem with route = \"free\""),
+    key("mission", "targets_lonlat_deg", Kind::LonLats, "instead: targets as [[longitude, planetocentric latitude], ...], degrees"),
+    key("mission", "order", Kind::Word(&ORDERS), "best: the best order by the objective; given: as listed; absent: best"),
+    key("mission", "return_to_start", Kind::Flag, "the mission ends where it began; absent: at the last target"),
     key("report", "title", Kind::Text, "title of the picture; absent: the scenario's file name"),
 ];
 

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Budget, DriveKeys, LegsKeys, Route, Scenario, TerrainSource, UncertaintyKeys};
+use super::{Budget, DriveKeys, LegsKeys, MissionKeys, Route, Scenario, TerrainSource, UncertaintyKeys};
 use crate::{
     ballistics::stance::ConeKind,
     graph::{PointSpacing, ReliabilityUse},
@@ -36,6 +36,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     tables.insert("search".to_owned(), search(scenario));
     tables.insert("budget".to_owned(), budget(&scenario.budget));
     tables.insert("drive".to_owned(), scenario.drive.as_ref().map_or_else(|| json!({}), drive));
+    tables.insert("mission".to_owned(), scenario.mission.as_ref().map_or_else(|| json!({}), mission));
     let derating = scenario.derating;
     let share = |share: f64| (share != 1.0).then(|| Value::from(share));
     tables.insert(
@@ -191,28 +192,17 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         _ => [None, None],
     };
     let [start_in_space, goal_in_space] = in_space;
-    let metres = |place: &MapPlace| match place {
-        MapPlace::Metres(point) => Some(json!([point.x, point.y])),
-        MapPlace::LonLat(_) => None,
-    };
-    let degrees = |place: &MapPlace| match place {
-        MapPlace::Metres(_) => None,
-        MapPlace::LonLat(place) => Some(json!([place.lon_deg, place.lat_deg])),
-    };
-    // All points are of the first one's kind: the reader accepts no mixture.
-    let list = |said: &dyn Fn(&MapPlace) -> Option<Value>| {
-        let places: Vec<Value> = scenario.via.iter().filter_map(said).collect();
-        (!places.is_empty()).then(|| places.into())
-    };
+    // A mission over targets has no goal.
+    let goal = ends.as_ref().map(|[_, goal]| goal).filter(|_| scenario.mission.is_none());
     object([
         ("dem", dem),
         ("mesh", mesh),
         ("mesh_scale", mesh_scale),
         ("chain", chain),
         ("start_m", ends.as_ref().and_then(|[start, _]| metres(start)).or(start_in_space)),
-        ("goal_m", ends.as_ref().and_then(|[_, goal]| metres(goal)).or(goal_in_space)),
+        ("goal_m", goal.and_then(metres).or(goal_in_space)),
         ("start_lonlat_deg", ends.as_ref().and_then(|[start, _]| degrees(start))),
-        ("goal_lonlat_deg", ends.as_ref().and_then(|[_, goal]| degrees(goal))),
+        ("goal_lonlat_deg", goal.and_then(degrees)),
         (
             "no_data",
             match scenario.no_data {
@@ -223,11 +213,39 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
             },
         ),
         ("accept_map_scale", scenario.accept_map_scale.then_some(true.into())),
-        ("via_m", list(&metres)),
-        ("via_lonlat_deg", list(&degrees)),
+        ("via_m", places(&scenario.via, metres)),
+        ("via_lonlat_deg", places(&scenario.via, degrees)),
         ("route", (scenario.route == Route::Free).then(|| scenario.route.name().into())),
         ("start_x_m", scenario.start_x_m.map(Value::from)),
         ("goal_x_m", scenario.goal_x_m.map(Value::from)),
+    ])
+}
+
+/// A place that was given on the map.
+fn metres(place: &MapPlace) -> Option<Value> {
+    place.metres().map(|at| json!([at.x, at.y]))
+}
+
+/// A place that was given on the body.
+fn degrees(place: &MapPlace) -> Option<Value> {
+    match place {
+        MapPlace::Metres(_) => None,
+        MapPlace::LonLat(place) => Some(json!([place.lon_deg, place.lat_deg])),
+    }
+}
+
+/// A list of places of one form. All are of the first one's: the reader accepts no mixture.
+fn places(places: &[MapPlace], of_form: fn(&MapPlace) -> Option<Value>) -> Option<Value> {
+    let places: Vec<Value> = places.iter().filter_map(of_form).collect();
+    (!places.is_empty()).then(|| places.into())
+}
+
+fn mission(keys: &MissionKeys) -> Value {
+    object([
+        ("targets_m", places(&keys.targets, metres)),
+        ("targets_lonlat_deg", places(&keys.targets, degrees)),
+        ("order", Some(keys.order.name().into())),
+        ("return_to_start", keys.return_to_start.then_some(true.into())),
     ])
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{
-    Budget, DriveKeys, Entries, LayerKeys, LegsKeys, MeshSearch, Place, ProblemKind, Route, ScenarioProblem, TerrainSource,
+    Budget, DriveKeys, Entries, LayerKeys, LegsKeys, MeshSearch, MissionKeys, Place, ProblemKind, Route, ScenarioProblem, TerrainSource,
     UncertaintyKeys,
     propulsion::{self, landing},
     terrain_source::{terrain, via},
@@ -97,6 +97,8 @@ pub struct Scenario {
     pub uncertainty: Option<UncertaintyKeys>,
     /// How it drives, if the scenario has `[drive]`.
     pub drive: Option<DriveKeys>,
+    /// The targets that it visits, if the scenario has `[mission]`.
+    pub mission: Option<MissionKeys>,
     /// Title of the picture.
     pub title: Option<String>,
 }
@@ -132,6 +134,7 @@ impl Scenario {
         let derating = super::derating::derating(&mut entries, &hopper, &surface);
         let drive = super::drive::drive(&mut entries, terrain.as_ref(), route, hopper.limits());
         let drives = drive.as_ref().is_some_and(|keys| keys.travel.drives());
+        let mission = super::mission::mission(&mut entries, terrain.as_ref(), route, drives);
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
         let budget = super::budget::budget(&entries);
         let (objective, commands, wanted_angle) =
@@ -185,6 +188,7 @@ impl Scenario {
             derating,
             uncertainty,
             drive,
+            mission,
             title: entries.text("report", "title").map(str::to_owned),
         })
     }

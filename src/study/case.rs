@@ -93,6 +93,15 @@ pub enum CaseError {
         /// What is wanted, with its verb.
         question: &'static str,
     },
+    /// A question that is answered for one goal alone.
+    #[error("{question} for one goal alone, and this scenario visits targets: remove [mission] and give terrain.goal_m")]
+    OneGoal {
+        /// What is wanted, with its verb.
+        question: &'static str,
+    },
+    /// A question about targets without any.
+    #[error("found no [mission], expected mission.targets_m")]
+    NoTargets,
     /// A question about driving without wheels.
     #[error("found no [drive], expected drive.speed_m_s and drive.slope_up_max_deg for a mission that drives")]
     DriveOnly,

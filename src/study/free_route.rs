@@ -20,14 +20,14 @@ use crate::{
     hop::HopTest,
     path::{Execution, Hop, HopPath, execute},
     planner::{
-        Amount, Budgets, FreeRoute, LabelCap, Objective, RouteError, RouteGoal, RoutePath, RouteQuestion, SearchedCommands,
-        SurfaceLattice, SurfaceNodes, free_route_by,
+        Amount, Budgets, FreeRoute, LabelCap, Objective, RouteError, RouteGap, RouteGoal, RoutePath, RouteQuestion,
+        SearchedCommands, SurfaceLattice, SurfaceNodes, free_route_by,
     },
     progress::Progress,
     quantity::{MapPoint, VertexId},
     report::{CheckAnswer, DeratingRecord, ObjectiveRecord, RouteGapRecord, RouteKind, RouteRecord},
     scenario::{Route, Scenario, TerrainSource},
-    terrain::MapPlace,
+    terrain::{MapPlace, TerrainError},
 };
 
 /// Why a free route has no answer.
@@ -64,6 +64,19 @@ pub enum FreeRouteError {
         /// Which hop, from 1.
         hop: usize,
     },
+    /// Two stops of a mission at one place.
+    #[error(
+        "{second} is at the same place as {first}, expected different places: a mission begins at its start and visits a target once"
+    )]
+    SameStop {
+        /// The first of them.
+        first: String,
+        /// The second.
+        second: String,
+    },
+    /// A target whose place on the map is not known.
+    #[error(transparent)]
+    Target(Box<TerrainError>),
     /// A route that does not pass the independent checker.
     #[error(transparent)]
     Defect(#[from] Defect),
@@ -124,6 +137,14 @@ pub(super) fn hops_alone(scenario: &Scenario, question: &'static str) -> Result<
     if scenario.drives().is_some() { Err(CaseError::HopsOnly { question }) } else { Ok(()) }
 }
 
+/// Refuses a scenario that visits several targets.
+///
+/// # Errors
+/// [`CaseError::OneGoal`].
+pub(super) fn one_goal(scenario: &Scenario, question: &'static str) -> Result<(), CaseError> {
+    if scenario.mission.is_some() { Err(CaseError::OneGoal { question }) } else { Ok(()) }
+}
+
 /// What a search for free routes is asked of.
 pub(super) struct FreeSearch {
     /// The case, for exact commands.
@@ -140,8 +161,23 @@ pub(super) struct FreeSearch {
     pub(super) cap: LabelCap,
 }
 
+/// Chooses nodes for a case over its ground, with start and goal.
+pub(super) type NodesOf<'n> = dyn Fn(&Case, &DemGround, [MapPoint; 2]) -> Result<SurfaceNodes, JourneyError> + 'n;
+
 impl FreeSearch {
+    /// Over the nodes of a journey from start to goal.
+    ///
+    /// # Errors
+    /// [`JourneyError`].
     pub(super) fn of(case: &Case) -> Result<Self, JourneyError> {
+        Self::over(case, &nodes)
+    }
+
+    /// Over nodes of a case and its ground, with the start and the goal.
+    ///
+    /// # Errors
+    /// [`JourneyError`].
+    pub(super) fn over(case: &Case, nodes: &NodesOf<'_>) -> Result<Self, JourneyError> {
         let case = case.with_commands(Commands::Exact)?;
         let ends = case.ends()?;
         let geometry = case.planning().chain.geometry();
@@ -321,18 +357,25 @@ fn planning_ground(case: &Case) -> Result<DemGround, FreeRouteError> {
     Ok(planned_over(&exact, &scenario))
 }
 
-/// The lattice as fine as the scenario says, start and goal, and the nodes of the straight slice between them.
-fn nodes(case: &Case, ground: &DemGround, ends: [MapPoint; 2]) -> Result<SurfaceNodes, JourneyError> {
-    let (dem, chain) = (ground.terrain().dem(), &case.planning().chain);
+/// The lattice as fine as the scenario says.
+pub(super) fn lattice(case: &Case, ground: &DemGround) -> Result<SurfaceLattice, JourneyError> {
+    let dem = ground.terrain().dem();
     let lattice = SurfaceLattice::new(dem, nodes_per_post(case.scenario.search.spacing, dem, level_hop_m(ground)));
-    // Before the slice is filled with as many.
+    // Before a slice is filled with as many.
     SurfaceNodes::check(&lattice, 0).map_err(RouteError::from)?;
+    Ok(lattice)
+}
+
+/// The lattice, start and goal, and the nodes of the straight slice between them.
+fn nodes(case: &Case, ground: &DemGround, ends: [MapPoint; 2]) -> Result<SurfaceNodes, JourneyError> {
+    let (lattice, chain) = (lattice(case, ground)?, &case.planning().chain);
     let of_slice = NodeSet::of_chain(chain, PointSpacing::AtMostM(lattice.spacing_m())).map_err(SearchError::from)?;
     let places = of_slice.stations().iter().filter_map(|station| chain.geometry().map_point(station));
     SurfaceNodes::new(ground, lattice, ends.into_iter().chain(places)).map_err(|error| RouteError::from(error).into())
 }
 
-fn lower_bound(ground: &DemGround, ends: [MapPoint; 2]) -> Option<u64> {
+/// What no path between two places takes fewer hops than; `None` without ground, or where nothing hops.
+pub(super) fn lower_bound(ground: &DemGround, ends: [MapPoint; 2]) -> Option<u64> {
     let limits = ground.hopper().limits();
     let bounds = PathBounds::new(limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s(), ground.gravity_m_s2());
     let [from, to] = ends.map(|at| ground.position(at));
@@ -349,16 +392,22 @@ fn record(nodes: &SurfaceNodes, route: &FreeRoute, scenario: &Scenario) -> Route
         search_bytes: FreeRoute::bytes(nodes),
         reached_nodes: route.work.reached,
         nearest_m: place(&route.nearest),
-        gap: route.gap.as_ref().map(|gap| RouteGapRecord {
-            leads_to_goal_from_m: place(&gap.leads_from),
-            leads_to_goal_nodes: gap.leading,
-            width_m: gap.width_m,
-            pairs: gap.pairs,
-            judged_pairs: gap.judged,
-            refusals: (&gap.refusals).into(),
-            without_ground: gap.without_ground,
-            keys: gap_keys(gap, route.work.reached, scenario),
-        }),
+        gap: route.gap.as_ref().map(|gap| gap_record(gap, route.work.reached, scenario)),
+    }
+}
+
+/// What lies between so many places reached and those that lead to the goal.
+pub(super) fn gap_record(gap: &RouteGap, reached: usize, scenario: &Scenario) -> RouteGapRecord {
+    let leads_from = &gap.leads_from;
+    RouteGapRecord {
+        leads_to_goal_from_m: [leads_from.at.x, leads_from.at.y, leads_from.z_m],
+        leads_to_goal_nodes: gap.leading,
+        width_m: gap.width_m,
+        pairs: gap.pairs,
+        judged_pairs: gap.judged,
+        refusals: (&gap.refusals).into(),
+        without_ground: gap.without_ground,
+        keys: gap_keys(gap, reached, scenario),
     }
 }
 

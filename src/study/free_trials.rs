@@ -3,7 +3,7 @@
 use super::{
     Case, FreeRouteError, JourneyError,
     dem_ground::dem_ground,
-    free_route::{FoundRoute, FreeSearch, Laid, hops_alone},
+    free_route::{FoundRoute, FreeSearch, Laid, hops_alone, one_goal},
     front::{FlownJourney, RELIABLE},
     journey::Searched,
     objective::reliability,
@@ -56,10 +56,23 @@ struct Estimated {
 /// [`JourneyError`].
 pub(super) fn route_with_success(case: &Case, progress: &dyn Progress) -> Result<(FoundRoute, Searched), JourneyError> {
     hops_alone(&case.scenario, "this question is answered")?;
+    one_goal(&case.scenario, "this question is answered")?;
     let search = FreeSearch::of(case)?;
     let route = search.route(progress)?;
+    with_success(&search, &route, progress)
+}
+
+/// The same for a route that was found.
+///
+/// # Errors
+/// [`JourneyError`].
+pub(super) fn with_success(
+    search: &FreeSearch,
+    route: &FreeRoute,
+    progress: &dyn Progress,
+) -> Result<(FoundRoute, Searched), JourneyError> {
     let laid = route.path.as_ref().map(|path| search.laid(path, search.case.scenario.commands)).transpose()?;
-    let found = search.found(&route, laid)?;
+    let found = search.found(route, laid)?;
     let scenario = &search.case.scenario;
     let least = scenario.budget.estimated_success_min;
     let weighs = scenario.risk != ReliabilityUse::Ignored && !scenario.plans_by_objective();
@@ -76,7 +89,7 @@ pub(super) fn route_with_success(case: &Case, progress: &dyn Progress) -> Result
     let mut is_other = false;
     let others = if looks_on { reliable_places(&best.route, progress)? } else { Vec::new() };
     for places in &others {
-        let Some(other) = other_route(&search, &route, places)? else { continue };
+        let Some(other) = other_route(search, route, places)? else { continue };
         if scenario.risk == ReliabilityUse::FewestHops && other.found.hops() != hops {
             continue;
         }

@@ -4,10 +4,11 @@ use super::{
     Case, JourneyError,
     free_trials::route_with_success,
     journey::{self, Searched},
+    targets::{TargetsPlanned, targets_plan},
     travel::{TravelOptions, TravelPlanned, travel_plan},
 };
 use crate::{
-    graph::Outcome,
+    graph::{Outcome, proof::ProofVerdict},
     path::{HopPath, generate},
     progress::Progress,
     report::{CheckAnswer, ObjectiveRecord, SuccessBudgetRecord, TotalsRecord},
@@ -23,6 +24,8 @@ pub(super) enum JourneyPath {
     Free(Box<Searched>, Box<CheckAnswer>, Option<HopPath>),
     /// A mission that drives.
     Travel(Box<TravelPlanned>),
+    /// A mission over targets.
+    Targets(Box<TargetsPlanned>),
 }
 
 impl JourneyPath {
@@ -33,6 +36,9 @@ impl JourneyPath {
     pub(super) fn of(case: &Case, progress: &dyn Progress) -> Result<Self, JourneyError> {
         if case.scenario.drives().is_some() {
             return Ok(Self::Travel(Box::new(travel_plan(case, TravelOptions::default(), progress)?)));
+        }
+        if case.scenario.mission.is_some() {
+            return Ok(Self::Targets(Box::new(targets_plan(case, progress)?)));
         }
         if case.scenario.route == Route::Free {
             let (route, searched) = route_with_success(case, progress)?;
@@ -46,14 +52,15 @@ impl JourneyPath {
     const fn searched(&self) -> Option<&Searched> {
         match self {
             Self::Transect(searched) | Self::Free(searched, ..) => Some(searched),
-            Self::Travel(_) => None,
+            Self::Travel(_) | Self::Targets(_) => None,
         }
     }
 
-    /// The hops; `None` without a path.
+    /// The hops; `None` without a path, and of a mission that does not visit all targets.
     pub(super) fn hops(&self) -> Option<u64> {
         match self {
             Self::Travel(planned) => planned.answer.hops,
+            Self::Targets(planned) => planned.answer.hops.filter(|_| planned.tour.left_out.is_empty()),
             Self::Transect(searched) | Self::Free(searched, ..) => searched.found.hops(),
         }
     }
@@ -67,15 +74,18 @@ impl JourneyPath {
     pub(super) fn objective(&self) -> Option<&ObjectiveRecord> {
         match self {
             Self::Travel(planned) => Some(&planned.answer.objective),
+            Self::Targets(planned) => Some(&planned.answer.objective),
             Self::Transect(searched) | Self::Free(searched, ..) => searched.objective.as_ref(),
         }
     }
 
-    /// Of a free route: its answer.
-    pub(super) fn free_check(&self) -> Option<&CheckAnswer> {
+    /// The verdict, and what no path takes fewer hops than, where it is no transect.
+    pub(super) fn verdict(&self) -> (ProofVerdict, Option<u64>) {
         match self {
-            Self::Free(_, check, _) => Some(check),
-            Self::Transect(_) | Self::Travel(_) => None,
+            Self::Free(_, check, _) => (check.verdict, check.hops_lower_bound),
+            Self::Travel(planned) => (planned.answer.verdict, Some(planned.answer.hops_lower_bound)),
+            Self::Targets(planned) => (planned.answer.verdict, planned.answer.hops_lower_bound),
+            Self::Transect(_) => (ProofVerdict::Open, None),
         }
     }
 
@@ -83,6 +93,7 @@ impl JourneyPath {
     pub(super) fn totals(&self, case: &Case) -> Option<TotalsRecord> {
         match self {
             Self::Travel(planned) => planned.totals_record(),
+            Self::Targets(planned) => planned.totals_record(),
             Self::Transect(_) | Self::Free(..) => self.path(case).map(|path| TotalsRecord::from(&path.totals)),
         }
     }
@@ -91,6 +102,7 @@ impl JourneyPath {
     pub(super) fn path(&self, case: &Case) -> Option<HopPath> {
         let searched = match self {
             Self::Travel(_) => return None,
+            Self::Targets(planned) => return planned.path().cloned(),
             Self::Free(_, _, path) => return path.clone(),
             Self::Transect(searched) => searched,
         };

@@ -12,6 +12,8 @@
 //! require      the least capability with which the goal can be reached
 //! trade        a verdict for every value of one or two keys
 //! compare      several scenarios side by side
+//! targets_plan a mission over several targets; targets_simulate its trials
+//! sites        landing sites ranked
 //! arena        a path of a wheeled jumper among boxes
 //! ```
 
@@ -68,11 +70,13 @@ mod schema;
 mod sense;
 mod sensitivity;
 mod simulate;
+mod sites;
 pub mod slice;
 mod stance;
 #[cfg(feature = "plot")]
 mod stance_picture;
 mod swept_key;
+mod targets;
 mod to_go;
 mod trade;
 mod trade_free;
@@ -118,7 +122,9 @@ pub use simulate::{SimulateError, SimulateOptions, Simulated, Trials, simulate};
 pub use stance::{ContactsError, StanceError, StanceQuestion, StanceTerrain, Stood, contacts_of, stand};
 #[cfg(feature = "plot")]
 pub use stance_picture::contacts_picture;
+pub use sites::{Candidates, SitesQuestion, SitesStudy, sites};
 pub use swept_key::SweptKey;
+pub use targets::{TargetsPlanned, TargetsSimulated, targets_plan, targets_simulate};
 pub use trade::{CellError, Trade, TradeError, TradedCells, Varied, verdict};
 pub use traded::{Traded, trade};
 pub use trajectory::TrajectoryError;

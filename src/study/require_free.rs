@@ -2,7 +2,7 @@
 
 use super::{Case, RequireError, Required, journey_path::JourneyPath, require::Question};
 use crate::{
-    graph::proof::{CapabilityRange, ProofVerdict, Threshold},
+    graph::proof::{CapabilityRange, Threshold},
     progress::{Detail, Meter, Progress, Stage},
     report::{DeratingRecord, HopRecord, RequireAnswer, RequireTry, TotalsRecord},
 };
@@ -16,13 +16,8 @@ struct Tried {
 
 impl Tried {
     fn record(&self) -> RequireTry {
-        let check = self.route.free_check();
-        RequireTry {
-            value: self.value,
-            verdict: check.map_or(ProofVerdict::Open, |check| check.verdict),
-            lower_bound: check.and_then(|check| check.hops_lower_bound),
-            upper_bound: self.route.hops(),
-        }
+        let (verdict, lower_bound) = self.route.verdict();
+        RequireTry { value: self.value, verdict, lower_bound, upper_bound: self.route.hops() }
     }
 }
 

@@ -6,12 +6,14 @@ use super::{
     Case, CellError,
     free_trials::route_with_success,
     physics::escape_warnings,
+    targets::targets_plan,
     travel::{TravelOptions, travel_plan},
 };
 use crate::{
-    path::Hop,
+    path::{Hop, HopPath},
     progress::Progress,
     report::{MarginsRecord, TotalsRecord, TradeRow},
+    scenario::Scenario,
 };
 
 /// The row of a cell.
@@ -22,22 +24,51 @@ pub(super) fn free_row(case: &Case, values: BTreeMap<String, f64>, progress: &dy
     if case.scenario.drives().is_some() {
         return travel_row(case, values, progress);
     }
+    if case.scenario.mission.is_some() {
+        return targets_row(case, values, progress);
+    }
     let (route, _) = route_with_success(case, progress)?;
     let (scenario, check) = (&case.scenario, route.check);
     let path = route.path.filter(|_| check.is_traversable());
-    let longest_m = path.iter().flat_map(|path| &path.hops).map(Hop::run_m).reduce(f64::max);
     Ok(TradeRow {
         values,
         verdict: Some(check.verdict),
         hops: check.hops.filter(|_| path.is_some()),
         lower_bound: None,
         above_escape: !escape_warnings(scenario, Some(case.prepared.chain.geometry())).is_empty(),
-        far_on_body: longest_m.zip(scenario.body.radius_m()).is_some_and(|(longest_m, radius_m)| longest_m > 0.01 * radius_m),
+        far_on_body: is_far_on_body(scenario, path.as_ref()),
         totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
         margins: path.as_ref().and_then(MarginsRecord::of),
         effort: check.effort.filter(|_| path.is_some()),
         success_budget: check.success_budget,
         by_objective: check.objective,
+        error: None,
+    })
+}
+
+/// Whether a hop is so long that the body under it is no plain.
+fn is_far_on_body(scenario: &Scenario, path: Option<&HopPath>) -> bool {
+    let longest_m = path.into_iter().flat_map(|path| &path.hops).map(Hop::run_m).reduce(f64::max);
+    longest_m.zip(scenario.body.radius_m()).is_some_and(|(longest_m, radius_m)| longest_m > 0.01 * radius_m)
+}
+
+/// The row of a mission over targets: its hops where it visits all of them.
+fn targets_row(case: &Case, values: BTreeMap<String, f64>, progress: &dyn Progress) -> Result<TradeRow, CellError> {
+    let planned = targets_plan(case, progress)?;
+    let (answer, scenario) = (&planned.answer, &case.scenario);
+    let path = planned.path().filter(|_| answer.is_traversable());
+    Ok(TradeRow {
+        values,
+        verdict: Some(answer.verdict),
+        hops: path.map(|path| path.hops.len() as u64),
+        lower_bound: None,
+        above_escape: !escape_warnings(scenario, Some(case.prepared.chain.geometry())).is_empty(),
+        far_on_body: is_far_on_body(scenario, path),
+        totals: path.map(|path| TotalsRecord::from(&path.totals)),
+        margins: path.and_then(MarginsRecord::of),
+        effort: None,
+        success_budget: None,
+        by_objective: scenario.plans_by_objective().then(|| answer.objective.clone()),
         error: None,
     })
 }

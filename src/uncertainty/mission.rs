@@ -29,6 +29,8 @@ pub struct Mission {
     pub(super) replanning: Option<Replanning>,
     /// The ground under the limits that planning may use, over a DEM; `None`: that of the trials.
     pub(super) planned_over: Option<Arc<DemGround>>,
+    /// The mission that follows from the goal on.
+    next: Option<Box<Self>>,
 }
 
 /// The ground of the trials.
@@ -69,17 +71,39 @@ impl Mission {
     /// A path along a chain: flights stay in its vertical plane.
     pub fn along_chain(test: HopTest, path: HopPath, start: Station, goal: Station) -> Self {
         let [start, goal] = [start, goal].map(|station| test.chain().contact_point(&station));
-        Self { ground: MissionGround::Chain(ChainGround::new(test)), path, start, goal, replanning: None, planned_over: None }
+        Self {
+            ground: MissionGround::Chain(ChainGround::new(test)),
+            path,
+            start,
+            goal,
+            replanning: None,
+            planned_over: None,
+            next: None,
+        }
     }
 
     /// A path over a DEM, in any direction: flights follow their heading.
     pub const fn over_dem(ground: DemGround, path: HopPath, start: ContactPoint, goal: ContactPoint) -> Self {
-        Self { ground: MissionGround::Map(ground), path, start, goal, replanning: None, planned_over: None }
+        Self { ground: MissionGround::Map(ground), path, start, goal, replanning: None, planned_over: None, next: None }
     }
 
     /// A path over a mesh, under overhangs and through caves: flights follow their heading, up to the first facet that they meet.
     pub const fn over_mesh(ground: MeshGround, path: HopPath, start: ContactPoint, goal: ContactPoint) -> Self {
-        Self { ground: MissionGround::Mesh(ground), path, start, goal, replanning: None, planned_over: None }
+        Self { ground: MissionGround::Mesh(ground), path, start, goal, replanning: None, planned_over: None, next: None }
+    }
+
+    /// The same mission, and the one that follows from its goal on.
+    pub(super) fn followed_by(mut self, next: Self) -> Self {
+        let later = match self.next.take() {
+            Some(later) => later.followed_by(next),
+            None => next,
+        };
+        Self { next: Some(Box::new(later)), ..self }
+    }
+
+    /// The planned hops, with those of the missions that follow.
+    pub(super) fn hops(&self) -> usize {
+        self.path.hops.len() + self.next.as_ref().map_or(0, |next| next.hops())
     }
 
     /// SHA-256 of all that trials depend on, besides errors and options, in hexadecimal: equal for the same mission and the same version
@@ -121,6 +145,9 @@ impl Mission {
         }
         if let Some(ground) = &self.planned_over {
             let _ = limits_text(&mut digest, ground);
+        }
+        if let Some(next) = &self.next {
+            let _ = write!(digest, "{}", next.digest());
         }
         digest.0.finalize().iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
     }

@@ -77,6 +77,9 @@ impl fmt::Display for MissionPoint {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
+    /// A mission that is to follow another one over another kind of ground.
+    #[error("found missions over different kinds of ground, expected all over a chain, all over a DEM or all over a mesh")]
+    OtherGround,
     /// Invalid deviations.
     #[error(transparent)]
     Uncertainty(#[from] UncertaintyProblem),

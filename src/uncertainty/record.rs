@@ -94,6 +94,8 @@ pub struct TrialRecord {
     pub outcome: TrialOutcome,
     /// The number of hops flown, including the last one, even if it did not land.
     pub hops: u32,
+    /// How many stops of the mission it reached, one after the other, each within the goal tolerance: the goal alone, or every target.
+    pub stops: u32,
     /// Where it ended.
     pub end_m: Point3<f64>,
     /// Horizontal distance from the end to the goal, m.

@@ -85,6 +85,24 @@ impl Simulation {
         Ok(Self { mission: mission.clone(), uncertainty, ground_and_plan })
     }
 
+    /// The same mission, which goes on where it has reached its goal: with another one that begins there, over the same kind of ground.
+    ///
+    /// Its trials fly both, each from where the one before has brought them. The goal of a mission is then one of several stops: whoever
+    /// misses it does not go on.
+    ///
+    /// # Errors
+    /// [`SimulationError::OtherGround`].
+    pub fn followed_by(mut self, next: Self) -> Result<Self, SimulationError> {
+        match (&mut self.ground_and_plan, next.ground_and_plan) {
+            (GroundAndPlan::Chain(_, plan), GroundAndPlan::Chain(_, next)) => plan.append(next),
+            (GroundAndPlan::Map(_, plan), GroundAndPlan::Map(_, next)) => plan.append(next),
+            (GroundAndPlan::Mesh(_, plan), GroundAndPlan::Mesh(_, next)) => plan.append(next),
+            _ => return Err(SimulationError::OtherGround),
+        }
+        self.mission = self.mission.followed_by(next.mission);
+        Ok(self)
+    }
+
     /// Flies the trials.
     ///
     /// Batches of 1 000 trials are distributed over the threads and added in the order of trials, so the results do not depend on
@@ -161,7 +179,7 @@ impl Simulation {
     }
 
     fn hop_limit(&self, options: &TrialOptions) -> u32 {
-        options.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(self.mission.path.hops.len()))
+        options.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(self.mission.hops()))
     }
 
     /// The share of fixed trials that reach the goal, under the policy, tolerance and hop limit of the options.
@@ -235,9 +253,9 @@ impl Simulation {
             return Err(SimulationError::HalfWidth { found });
         }
         let replans = match &self.ground_and_plan {
-            GroundAndPlan::Chain(_, plan) => plan.replan.is_some(),
-            GroundAndPlan::Map(_, plan) => plan.replan.is_some(),
-            GroundAndPlan::Mesh(_, plan) => plan.replan.is_some(),
+            GroundAndPlan::Chain(_, plan) => plan.legs().all(|leg| leg.replan.is_some()),
+            GroundAndPlan::Map(_, plan) => plan.legs().all(|leg| leg.replan.is_some()),
+            GroundAndPlan::Mesh(_, plan) => plan.legs().all(|leg| leg.replan.is_some()),
         };
         if policy == Policy::Replan && !replans {
             return Err(SimulationError::NoCostsToGo);
@@ -268,8 +286,8 @@ impl Simulation {
             [point.x, point.y]
         };
         let mut tally = Statistics::new(PlannedPlaces {
-            landings: plan.hops.iter().map(|hop| place(&hop.command.aim)).collect(),
-            goal: [plan.goal.x, plan.goal.y],
+            landings: plan.legs().flat_map(|leg| &leg.hops).map(|hop| place(&hop.command.aim)).collect(),
+            goal: [plan.last().goal.x, plan.last().goal.y],
             on_a_map: !matches!(self.ground_and_plan, GroundAndPlan::Chain(..)),
         });
         let mut trajectories = Vec::new();
@@ -362,7 +380,7 @@ fn chain_plan(mission: &Mission) -> Result<Plan<ChainPosition>, SimulationError>
         Some(_) | None => None,
     };
     let goal = Point3::new(mission.goal.along_m, 0.0, mission.goal.point_m.z);
-    Ok(Plan { start: position(&mission.start, MissionPoint::Start)?, goal, hops, replan })
+    Ok(Plan { start: position(&mission.start, MissionPoint::Start)?, goal, hops, replan, next: None })
 }
 
 /// The plan on a map.
@@ -399,7 +417,7 @@ fn map_plan(mission: &Mission, ground: &DemGround) -> Result<Plan<MapPosition>, 
         Some(Replanning::PostRisks(to_go)) => Some(Box::new(ReliablePost::new(planning, to_go))),
         Some(Replanning::Contacts(_)) | None => None,
     };
-    Ok(Plan { start, goal: ground.point(&goal), hops, replan })
+    Ok(Plan { start, goal: ground.point(&goal), hops, replan, next: None })
 }
 
 /// The plan over a mesh.
@@ -423,5 +441,5 @@ fn mesh_plan(mission: &Mission, ground: &MeshGround) -> Result<Plan<MeshPosition
         }
         _ => None,
     };
-    Ok(Plan { start, goal: goal.point_m, hops, replan })
+    Ok(Plan { start, goal: goal.point_m, hops, replan, next: None })
 }

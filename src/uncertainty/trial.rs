@@ -18,6 +18,28 @@ pub(super) struct Plan<C> {
     pub(super) hops: Vec<PlannedHop<C>>,
     /// For [`Policy::Replan`].
     pub(super) replan: Option<Box<dyn Replan<C>>>,
+    /// The journey that follows from the goal on, where a mission has several stops.
+    pub(super) next: Option<Box<Self>>,
+}
+
+impl<C> Plan<C> {
+    /// This journey and those that follow.
+    pub(super) fn legs(&self) -> impl Iterator<Item = &Self> {
+        std::iter::successors(Some(self), |plan| plan.next.as_deref())
+    }
+
+    /// The last journey.
+    pub(super) fn last(&self) -> &Self {
+        self.legs().last().unwrap_or(self)
+    }
+
+    /// Adds a journey at the end.
+    pub(super) fn append(&mut self, next: Self) {
+        match &mut self.next {
+            Some(later) => later.append(next),
+            None => self.next = Some(Box::new(next)),
+        }
+    }
 }
 
 /// Propellant beyond the greatest by less than this share is within it: the tolerance of speeds.
@@ -100,10 +122,11 @@ pub(super) fn fly<G: FirstContact + Windows>(
         ground.realize(realization);
     }
     let biases = rules.errors.begin(draws, trial);
-    let mut journey = Journey { nominal, ground, plan, rules, position: ground.realized(plan.start), hops: 0, used_kg: 0.0 };
+    let mut journey =
+        Journey { nominal, ground, plan, rules, position: ground.realized(plan.start), hops: 0, stops: 0, before: 0, used_kg: 0.0 };
     let outcome = loop {
         let drawn = rules.errors.draw(draws, &biases);
-        let command = match journey.decide(&drawn) {
+        let command = match journey.decide_over_stops(&drawn) {
             Ok(command) => command,
             Err(outcome) => break outcome,
         };
@@ -137,8 +160,8 @@ pub(super) fn fly<G: FirstContact + Windows>(
         last.outcome = Some(outcome);
     }
     let end_m = journey.ground.point(&journey.position);
-    let goal_distance_m = journey.ground.apart_m(&end_m, &plan.goal);
-    flown.trials.push(TrialRecord { trial, outcome, hops: journey.hops, end_m, goal_distance_m });
+    let goal_distance_m = journey.ground.apart_m(&end_m, &plan.last().goal);
+    flown.trials.push(TrialRecord { trial, outcome, hops: journey.hops, stops: journey.stops, end_m, goal_distance_m });
 }
 
 /// A trial in progress.
@@ -150,14 +173,31 @@ struct Journey<'t, G: FirstContact> {
     rules: &'t Rules,
     position: G::Contact,
     hops: u32,
+    /// How many stops of the mission it has reached.
+    stops: u32,
+    /// The hops flown before the last stop.
+    before: u32,
     /// Propellant used, kg; counted for a machine with a [`Tank`].
     used_kg: f64,
 }
 
 impl<G: FirstContact + Windows> Journey<'_, G> {
+    /// The next command, from each stop that it is at on towards the next one, or the outcome of a mission that ends here.
+    fn decide_over_stops(&mut self, drawn: &HopErrors) -> Result<Command<G::Contact>, TrialOutcome> {
+        loop {
+            let decided = self.decide(drawn);
+            if !matches!(decided, Err(TrialOutcome::Reached)) {
+                return decided;
+            }
+            self.stops += 1;
+            let Some(next) = self.plan.next.as_deref() else { return decided };
+            (self.plan, self.before) = (next, self.hops);
+        }
+    }
+
     /// The next command, or the outcome of a journey that ends here.
     fn decide(&self, drawn: &HopErrors) -> Result<Command<G::Contact>, TrialOutcome> {
-        let planned = usize::try_from(self.hops).ok().and_then(|hop| self.plan.hops.get(hop));
+        let planned = usize::try_from(self.hops - self.before).ok().and_then(|hop| self.plan.hops.get(hop));
         match self.rules.policy {
             Policy::OpenLoop => planned.map(|hop| hop.command).ok_or_else(|| self.arrived()),
             Policy::Replan => {

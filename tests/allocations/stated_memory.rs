@@ -96,6 +96,7 @@ fn a_map_holds_at_most_the_bytes_that_it_states() {
             effort,
             returns,
             mobility,
+            ranks_sites: false,
             predecessors,
             trials: footprint.contains("trials"),
             hops_max: None,

@@ -10,10 +10,11 @@ use std::{
 
 use crate::desk::{ACROSS, CHAIN, Desk, FORWARD_ONLY, FOUR_LEGS, Ran};
 
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 18] = [
     "run",
     "slice",
     "map",
+    "sites",
     "hop",
     "check",
     "plan",
@@ -30,9 +31,9 @@ const COMMANDS: [&str; 17] = [
     "schema",
 ];
 
-/// Options that need a projected map, tested in `maps_command.rs`.
-const ON_A_PROJECTED_MAP: [&str; 6] =
-    ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--start-lonlat", "--goal-lonlat", "--accept-map-scale"];
+/// Options that need a projected map, tested in `maps_command.rs`, `--target-lonlat` in `sites.rs`.
+const ON_A_PROJECTED_MAP: [&str; 7] =
+    ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--start-lonlat", "--goal-lonlat", "--target-lonlat", "--accept-map-scale"];
 
 /// Options that change only the run time, tested below and in `trade_compare.rs`.
 const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
@@ -104,6 +105,158 @@ const SLICE: [Trial; 8] = [
         "--output",
         &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"],
         &["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "-o", "slice.csv"],
+    ),
+];
+
+const SITES: [Trial; 17] = [
+    (
+        "--every",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--every", "7", "--scenario", "map.toml"],
+    ),
+    (
+        "--candidates",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--candidates", "starts.csv", "--scenario", "map.toml"],
+    ),
+    (
+        "--target",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--target", "9,9"],
+    ),
+    (
+        "--stride",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--stride", "2"],
+    ),
+    (
+        "--node-spacing-max-m",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--node-spacing-max-m", "0.5"],
+    ),
+    (
+        "--objective",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--objective", "energy"],
+    ),
+    (
+        "--require-all",
+        &[
+            "sites",
+            "ground.tif",
+            "--every",
+            "19",
+            "--target",
+            "9,9",
+            "--scenario",
+            "map.toml",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=0.1",
+        ],
+        &[
+            "sites",
+            "ground.tif",
+            "--every",
+            "19",
+            "--target",
+            "9,9",
+            "--scenario",
+            "map.toml",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=0.1",
+            "--require-all",
+        ],
+    ),
+    (
+        "--output",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "-o", "sites.csv"],
+    ),
+    (
+        "--plot",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--plot", "sites.svg"],
+    ),
+    (
+        "--dry-run",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--dry-run"],
+    ),
+    (
+        "--format",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--format", "json"],
+    ),
+    (
+        "--scenario",
+        &[
+            "sites",
+            "ground.tif",
+            "--every",
+            "5",
+            "--body",
+            "mars",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=3",
+            "--set",
+            "hopper.landing_speed_max_m_s=3",
+            "--set",
+            "surface.friction_coefficient=0.5",
+        ],
+        &[
+            "sites",
+            "ground.tif",
+            "--every",
+            "5",
+            "--body",
+            "mars",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=3",
+            "--set",
+            "hopper.landing_speed_max_m_s=3",
+            "--set",
+            "surface.friction_coefficient=0.5",
+            "--format",
+            "json",
+            "--scenario",
+            "map.toml",
+        ],
+    ),
+    (
+        "--set",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--set", "hopper.takeoff_speed_max_m_s=3"],
+    ),
+    (
+        "--body",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--body", "moon"],
+    ),
+    (
+        "--gravity-m-s2",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--gravity-m-s2", "2.5"],
+    ),
+    (
+        "--clearance-m",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
+        &[
+            "sites",
+            "ground.tif",
+            "--every",
+            "5",
+            "--scenario",
+            "map.toml",
+            "--clearance-m",
+            "2.5",
+            "--set",
+            "hopper.clearance_taper=3",
+        ],
+    ),
+    (
+        "--quiet",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--set", "search.split=equal"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--set", "search.split=equal", "--quiet"],
     ),
 ];
 
@@ -1182,6 +1335,7 @@ fn every_option_changes_the_output() {
         ("run", &RUN[..]),
         ("slice", &SLICE),
         ("map", &MAP),
+        ("sites", &SITES),
         ("hop", &HOP),
         ("check", &CHECK),
         ("plan", &PLAN),

@@ -8,7 +8,7 @@ use chta::arena::ArenaKeys;
 use chta::report::{
     ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer,
     LegsPlanAnswer, LegsSimulateAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer,
-    MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, StanceAnswer, TradeAnswer,
+    MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer, SizeAnswer, StanceAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer,
     TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
@@ -158,6 +158,8 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::CheckMesh => of::<MeshCheckAnswer>(text),
         DocumentKind::PlanMesh | DocumentKind::RunMesh => of::<MeshPlanAnswer>(text),
         DocumentKind::PlanTravel => of::<TravelAnswer>(text),
+        DocumentKind::PlanTargets => of::<TargetsAnswer>(text),
+        DocumentKind::SimulateTargets => of::<TargetsSimulateAnswer>(text),
         DocumentKind::MapTravel => of::<TravelMapAnswer>(text),
         DocumentKind::SimulateTravel => of::<TravelSimulateAnswer>(text),
         DocumentKind::Simulate => of::<SimulateAnswer>(text),
@@ -168,6 +170,7 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::Compare => of::<CompareAnswer>(text),
         DocumentKind::Fan => of::<FanAnswer>(text),
         DocumentKind::Map => of::<MapAnswer>(text),
+        DocumentKind::Sites => of::<SitesAnswer>(text),
         DocumentKind::Size => of::<SizeAnswer>(text),
         DocumentKind::Stance => of::<StanceAnswer>(text),
         DocumentKind::PlanLegs => of::<LegsPlanAnswer>(text),

@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 122] = [
+const TELLING: [(&str, &str); 126] = [
     ("body.name", "moon"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -130,6 +130,10 @@ const TELLING: [(&str, &str); 122] = [
     ("drive.failure_per_m", "0.01"),
     ("drive.heading_sigma_deg", "3"),
     ("drive.length_sigma_fraction", "0.1"),
+    ("mission.targets_m", "[[3, 3]]"),
+    ("mission.targets_lonlat_deg", "[[3, 3]]"),
+    ("mission.order", "given"),
+    ("mission.return_to_start", "true"),
 ];
 
 /// A scenario over a chain on which every limit can bind and trials fail now and then.

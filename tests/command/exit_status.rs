@@ -9,7 +9,7 @@ use crate::desk::{ACROSS, Desk, FOUR_LEGS};
 /// A command that ends with 0, and one that ends with 1.
 type Case = (&'static str, &'static [&'static str], Option<&'static [&'static str]>);
 
-const CASES: [Case; 18] = [
+const CASES: [Case; 19] = [
     ("run", &["run", "scenario.toml", "-o", "out"], Some(&["run", "slippery.toml", "-o", "out"])),
     ("slice", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], None),
     ("fan", &["fan", "ground.tif", "--from", "9,9", "--headings", "4", "--length", "5", "--scenario", "map.toml"], None),
@@ -17,6 +17,11 @@ const CASES: [Case; 18] = [
         "map",
         &["map", "ground.tif", "--start", "5,5", "--goal", "9,9", "--scenario", "map.toml"],
         Some(&["map", "ground.tif", "--start", "5,5", "--goal", "15,15", "--scenario", "weak_map.toml"]),
+    ),
+    (
+        "sites",
+        &["sites", "ground.tif", "--every", "6", "--target", "9,9", "--scenario", "map.toml"],
+        Some(&["sites", "ground.tif", "--every", "19", "--target", "9,9", "--scenario", "weak_map.toml", "--require-all"]),
     ),
     ("hop", &["hop", "scenario.toml", "--to", "10"], Some(&["hop", "slippery.toml"])),
     ("check", &["check", "scenario.toml"], Some(&["check", "slippery.toml", "--pairs", "pairs.csv"])),

@@ -10,9 +10,9 @@ use chta::{
     chain::csv::{CHAIN_COLUMNS, MEASURED_COLUMNS, PAIRS_COLUMNS},
     quantity::unit_of,
     report::{
-        CompareAnswer, FanAnswer, HopRecord, MapKnowledge, TradeAnswer,
+        CompareAnswer, FanAnswer, HopRecord, MapKnowledge, SitesAnswer, TargetHopRecord, TradeAnswer,
         landings::{CsvLandings, LandingColumns},
-        trajectory_columns, write_map_contacts_csv, write_paths_csv,
+        trajectory_columns, write_map_contacts_csv, write_paths_csv, write_target_hops_csv,
     },
     scenario::CATALOGUE,
     study::SchemaKind,
@@ -220,7 +220,13 @@ fn header(write: impl FnOnce(&mut Vec<u8>) -> std::io::Result<()>) -> Vec<String
 fn tables(records: &Records) -> Vec<(&'static str, &'static str, Vec<String>, Vec<&'static str>)> {
     let made_up = |name: &str| value_of(&records.by_name[name], records);
     let hop: HopRecord = serde_json::from_value(made_up("HopRecord")).unwrap();
+    let target_hops = [TargetHopRecord { visit: 1, target: Some(1), hop: hop.clone() }];
     let hops = [hop];
+    let sites = json!({
+        "stride": 1, "nodes_per_post": 1, "nodes": 1, "amount": "hops", "targets_m": [], "searches": 1, "parts": 1,
+        "sites": [made_up("SiteRecord")]
+    });
+    let sites: SitesAnswer = serde_json::from_value(sites).unwrap();
     let compare: CompareAnswer = serde_json::from_value(json!({ "compared": [made_up("CompareRow")] })).unwrap();
     let mut row = made_up("TradeRow");
     row["KEY"] = json!(1.0);
@@ -242,9 +248,21 @@ fn tables(records: &Records) -> Vec<(&'static str, &'static str, Vec<String>, Ve
             header(|out| write_paths_csv([&hops[..]], MapKnowledge::Projection, out)),
             vec!["HopRecord"],
         ),
+        (
+            "`path.csv` of a mission over targets",
+            "visits",
+            header(|out| write_target_hops_csv(&target_hops, MapKnowledge::Projection, out)),
+            vec!["TargetHopRecord", "HopRecord"],
+        ),
         ("A path in time (`--trajectory`)", "trajectory", trajectory, vec![]),
         ("Landings of trials (`simulate --output`), CSV and Parquet", "landings", landings, vec![]),
         ("Contacts of a mesh (`map --output`)", "contacts", header(|out| write_map_contacts_csv(&[], true, out)), vec![]),
+        (
+            "`sites --output` (beside a column of hops for each target)",
+            "sites",
+            header(|out| sites.write_csv(out)),
+            vec!["SiteRecord"],
+        ),
         ("`fan --output`", "fan", header(|out| fan.write_csv(out)), vec!["FanRecord"]),
         (
             "`trade --output`",

@@ -205,9 +205,13 @@ const COMMAND_LINES: usize = 60;
 /// Commands that are longer: the file, the most lines that it may have, and why.
 const LONGER_COMMANDS: [(&str, usize, &str); 4] = [
     ("fan.rs", 66, "two answers: the size before the computation, and the rays"),
-    ("plan.rs", 67, "two answers: the size before the search, and the path; meshes and wheels go on to files of their own"),
-    ("run.rs", 62, "meshes and wheels go on to files of their own"),
-    ("simulate/mod.rs", 68, "experiments, meshes and wheels go on to files of their own"),
+    (
+        "plan.rs",
+        70,
+        "two answers: the size before the search, and the path; meshes, wheels and targets go on to files of their own",
+    ),
+    ("run.rs", 65, "meshes, wheels and targets go on to files of their own"),
+    ("simulate/mod.rs", 72, "experiments, meshes, wheels and targets go on to files of their own"),
 ];
 
 /// A file of a command that has more lines than it may, or fewer than its exception grants by far.

@@ -85,6 +85,7 @@ mod stance_cones;
 mod stance_pushes;
 mod sweep;
 mod takeoff_speeds;
+mod targets;
 mod terrain_files;
 mod terrain_read_once;
 mod timetable;

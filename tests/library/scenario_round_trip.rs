@@ -131,8 +131,13 @@ fn toml() -> impl Strategy<Value = String> {
         let in_space = ground == 3 && degrees;
         // Wheels, with what they need.
         let on_wheels = ground == 0 && points && degrees;
+        // Targets, in one of their two forms.
+        let on_targets = ground == 0 && points && !degrees;
         let kept = |key: &Key| match (key.table, key.name) {
             _ if in_space && is_off_a_mesh(key) => false,
+            ("mission", "targets_m") => on_targets && friction,
+            ("mission", "targets_lonlat_deg") => on_targets && !friction,
+            ("mission", _) => on_targets,
             ("drive", name) => on_wheels && name != "idle_power_w",
             ("search", "risk") | ("contact", _) if on_wheels => false,
             ("search", "planner" | "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => in_space,
@@ -170,6 +175,7 @@ fn toml() -> impl Strategy<Value = String> {
         for (key, value) in sensible_hopper(&keys) {
             let value = match (key.table, key.name) {
                 ("terrain", "mesh") if in_space => Some("\"cave.stl\"".to_owned()),
+                ("mission", "targets_m" | "targets_lonlat_deg") if on_targets => Some("[[1.5, 2.0], [-7.25, 3.0]]".to_owned()),
                 ("drive", "speed_m_s") if on_wheels => Some("0.5".to_owned()),
                 ("drive", "slope_up_max_deg") if on_wheels => Some("20.0".to_owned()),
                 ("drive", "wheelbase_m") if on_wheels => Some("1.5".to_owned()),
@@ -287,6 +293,14 @@ fn every_key_reaches_the_document() {
                 with("terrain", "dem", "x.tif");
                 with("terrain", "start_m", "[0, 0]");
                 with("terrain", "goal_m", "[0, 0]");
+            }
+            ("mission", name) => {
+                with("terrain", "dem", "x.tif");
+                with("terrain", "route", "free");
+                with("terrain", "start_m", "[0, 0]");
+                if !name.starts_with("targets") {
+                    with("mission", "targets_m", "[[4, 5]]");
+                }
             }
             ("drive", _) => {
                 with("terrain", "dem", "x.tif");

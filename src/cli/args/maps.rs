@@ -87,6 +87,25 @@ fn hop_count(text: &str) -> Result<i16, String> {
     count.ok_or_else(|| format!("found `{text}`, expected a whole number of hops from 1 to {}, such as 10", i16::MAX))
 }
 
+impl MapArgs {
+    /// Whether nothing is asked for but single hops from every node, which need no start.
+    pub(crate) fn asks_for_single_hops(&self) -> bool {
+        let of_starts = [
+            self.output.is_some(),
+            self.effort.is_some(),
+            !self.amount_output.is_empty(),
+            self.back,
+            self.nearest_output.is_some(),
+            self.predecessor_output.is_some(),
+            self.hops_max.is_some(),
+            !self.goal.is_empty(),
+            !self.goal_lonlat.is_empty(),
+            self.simulate,
+        ];
+        self.mobility.is_some() && !of_starts.contains(&true)
+    }
+}
+
 /// An amount, and the file for its totals.
 #[derive(Clone, Debug)]
 pub(crate) struct AmountFile {
@@ -125,7 +144,7 @@ impl NodeSpacing {
 }
 
 /// Reads a spacing of nodes; its range is that of the key.
-fn node_spacing(text: &str) -> Result<NodeSpacing, String> {
+pub(super) fn node_spacing(text: &str) -> Result<NodeSpacing, String> {
     match text.trim() {
         "auto" => Ok(NodeSpacing::Auto),
         other => other
@@ -247,7 +266,7 @@ pub(crate) struct MapArgs {
     /// Also write a QGIS style (.qml) beside each raster, in the colours of the picture
     #[arg(long)]
     pub(crate) qml: bool,
-    /// Mobility (GeoTIFF) to write: the share of the posts within v^2/g of a post, v the smaller speed limit, that one hop from it
+    /// Mobility (GeoTIFF) to write, for which no start is needed: the share of the posts within v^2/g of a post, v the smaller speed limit, that one hop from it
     /// reaches, and in how many of 16 directions
     #[arg(long, value_name = "FILE")]
     pub(crate) mobility: Option<PathBuf>,

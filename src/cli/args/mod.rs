@@ -6,6 +6,7 @@ mod maps;
 mod position;
 mod setup;
 mod stance;
+mod sites;
 mod synth;
 mod terrains;
 
@@ -28,6 +29,7 @@ pub(crate) use position::{Position, place};
 use position::{lon_lat, map_point, position};
 pub(crate) use setup::{CompletionsArgs, ManArgs, SchemaArgs};
 pub(crate) use stance::StanceArgs;
+pub(crate) use sites::SitesArgs;
 pub(crate) use synth::{MeshArg, SynthArgs};
 pub(crate) use terrains::SliceArgs;
 
@@ -51,6 +53,7 @@ pub(crate) enum Command {
     Slice(SliceArgs),
     Fan(FanArgs),
     Map(Box<MapArgs>),
+    Sites(Box<SitesArgs>),
     Hop(HopArgs),
     Check(CheckArgs),
     Plan(PlanArgs),

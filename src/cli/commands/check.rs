@@ -5,7 +5,7 @@ use chta::{
     study::{check, check_pairs},
 };
 
-use super::check_over_mesh;
+use super::{check_over_mesh, check_targets};
 use crate::cli::{
     Answer, Failure,
     args::CheckArgs,
@@ -28,6 +28,9 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
         return check_over_mesh::run(args, &input);
     }
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Check, &[])?;
+    if loaded.case.scenario.mission.is_some() {
+        return check_targets::run(args, &loaded);
+    }
     let pairs = args.pairs.as_deref().map(read_pairs).transpose()?;
     pairs.is_none().then(|| loaded.ends()).transpose()?;
     // Outputs are opened before the computation, which may take long.

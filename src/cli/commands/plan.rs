@@ -5,7 +5,7 @@ use chta::{
     study::{PlanOptions, plan, route_size},
 };
 
-use super::{plan_over_mesh, plan_travel};
+use super::{plan_over_mesh, plan_targets, plan_travel};
 use crate::cli::{
     Answer, Failure,
     args::PlanArgs,
@@ -36,6 +36,9 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
         return plan_travel::run(args, &loaded);
     }
     args.refuse_alternatives()?;
+    if loaded.case.scenario.mission.is_some() {
+        return plan_targets::run(args, &loaded);
+    }
     if args.size.dry_run {
         let size = route_size(&loaded.case)?;
         return output::sized(&loaded.record.document(DocumentKind::Size, &[], size), args.answer.format);

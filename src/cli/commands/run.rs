@@ -7,7 +7,7 @@ use chta::{
     study::{PlanOptions, SimulateOptions, Trials, plan},
 };
 
-use super::{run_over_mesh, run_travel};
+use super::{run_over_mesh, run_targets, run_travel};
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, RunArgs},
@@ -38,6 +38,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     loaded.ends()?;
     if loaded.case.scenario.drives().is_some() {
         return run_travel::run(args, &loaded);
+    }
+    if loaded.case.scenario.mission.is_some() {
+        return run_targets::run(args, &loaded);
     }
     output::check_folder(&args.output)?;
     let mut folder = RunFolder::new(&args.output, args.trajectory.trajectory.as_deref())?;

@@ -50,6 +50,24 @@ pub(super) fn map(input: &MapInput, prepared: &PreparedMap, study: &MapStudy, fi
         };
         return output::encoded(draw_value_map(&figure), file);
     }
+    if let Some(mobility) = study.mobility.as_ref().filter(|_| starts.is_empty()) {
+        let values: Vec<f64> = mobility.share.iter().map(|share| 100.0 * f64::from(*share)).collect();
+        let figure = ValueMapFigure {
+            caption: Caption { title: format!("Single hops: {}", input.title()), lines: vec![conditions(&input.bare.scenario)] },
+            posts,
+            values: &values,
+            value_name: format!(
+                "mobility: share of the {}s within {:.1} m that one hop reaches (%)",
+                answer.node(),
+                mobility.disc_radius_m
+            ),
+            none_name: format!("no {} within reach", answer.node()),
+            starts,
+            goals: marks,
+            paths: ways,
+        };
+        return output::encoded(draw_value_map(&figure), file);
+    }
     let can_return: Option<Vec<bool>> = back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
     let figure = HopMapFigure {
         caption: Caption { title: format!("Where in how few hops: {}", input.title()), lines },

@@ -8,7 +8,7 @@ use crate::{
 
 /// What the paths of a map have least.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Aim {
+pub(in crate::study) enum Aim {
     /// Hops, then if wanted the effort; not more than so many hops.
     Hops(Option<i16>),
     /// The amounts of an objective, within a budget of the first of them.
@@ -23,7 +23,7 @@ impl MapQuestion<'_> {
     ///
     /// # Errors
     /// [`MapStudyError::OtherBudget`], [`MapStudyError::EffortBesideObjective`], [`MapStudyError::Map`].
-    pub(super) fn aim(&self) -> Result<Aim, MapStudyError> {
+    pub(in crate::study) fn aim(&self) -> Result<Aim, MapStudyError> {
         let scenario = self.scenario;
         if let Some(risk) = self.amounts.iter().find(|amount| **amount == Amount::Risk) {
             return Err(MapStudyError::NoRisk { amount: *risk });
@@ -70,7 +70,7 @@ impl MapQuestion<'_> {
 }
 
 /// The total from which on an amount is too much.
-pub(super) fn allowed(budget: Option<&TotalBudget>) -> f64 {
+pub(in crate::study) fn allowed(budget: Option<&TotalBudget>) -> f64 {
     budget.map_or(f64::INFINITY, |budget| {
         Budgets::NONE.with(budget.amount, budget.most).map_or(f64::INFINITY, |budgets| budgets.allowed(budget.amount))
     })

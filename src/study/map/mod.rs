@@ -10,6 +10,7 @@ mod memory;
 mod prepared;
 mod question;
 
+pub(super) use aim::{Aim, allowed};
 pub use answered::{MapStudy, NO_PREDECESSOR};
 pub use error::MapStudyError;
 pub use memory::MapMemory;

@@ -64,7 +64,8 @@ impl PreparedMap {
     pub fn new(question: &MapQuestion<'_>) -> Result<Self, MapStudyError> {
         let MapQuestion { scenario, base, dem: file, stride, .. } = question;
         let aim = question.aim()?;
-        if question.starts.is_empty() {
+        // Single hops need no start.
+        if question.starts.is_empty() && !question.ranks_sites && !question.mobility {
             return Err(MapStudyError::NoStart);
         }
         if let Some(allowed_bytes) = question.memory_max_bytes {
@@ -81,11 +82,6 @@ impl PreparedMap {
             places.iter().map(|place| spot(end, place, &dem, &projection, lattice)).collect()
         };
         let (starts, goals) = (spots(JourneyEnd::Start, &question.starts)?, spots(JourneyEnd::Goal, &question.goals)?);
-        for spot in starts.iter().chain(&goals) {
-            if lattice.position(&dem, spot.post).is_none() {
-                return Err(MapStudyError::NoElevation { name: spot.name.clone(), end: spot.end, post: spot.at });
-            }
-        }
         check_distinct_posts(&dem, lattice, &starts.iter().chain(&goals).collect::<Vec<_>>())?;
         warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
         warnings.extend(coarse_dem_warning(&scenario.hopper, dem.georeference()));
@@ -99,6 +95,14 @@ impl PreparedMap {
         let memory = MapMemory::of(question, &planning, lattice)?;
         memory.check(question.memory_max_bytes)?;
         Ok(Self { ground, planning, projection, lattice, starts, goals, warnings, memory })
+    }
+
+    /// A place, and the node nearest to it.
+    ///
+    /// # Errors
+    /// [`MapStudyError`]: off the map, or without an elevation.
+    pub(in crate::study) fn spot(&self, end: JourneyEnd, place: &NamedPlace) -> Result<Spot, MapStudyError> {
+        spot(end, place, self.dem(), &self.projection, self.lattice)
     }
 
     /// The elevations.
@@ -183,7 +187,11 @@ fn spot(
         return Err(MapStudyError::OffMap { name: name.clone(), at: asked, bounds });
     }
     let post = lattice.nearest(map, asked);
-    Ok(Spot { name: name.clone(), end, asked, post, at: lattice.at(map, post) })
+    let at = lattice.at(map, post);
+    if lattice.position(dem, post).is_none() {
+        return Err(MapStudyError::NoElevation { name: name.clone(), end, post: at });
+    }
+    Ok(Spot { name: name.clone(), end, asked, post, at })
 }
 
 /// Checks that positions at different posts of the DEM have different posts of the map.

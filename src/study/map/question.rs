@@ -23,7 +23,7 @@ pub struct MapQuestion<'a> {
     pub base: &'a Path,
     /// The DEM's file.
     pub dem: &'a Path,
-    /// The starts, at least one. A post is reached from the nearest of them.
+    /// The starts, at least one unless sites are ranked or single hops are asked for. A post is reached from the nearest of them.
     pub starts: Vec<NamedPlace>,
     /// The goals, whose paths are planned and flown again.
     pub goals: Vec<NamedPlace>,
@@ -37,6 +37,8 @@ pub struct MapQuestion<'a> {
     pub returns: bool,
     /// Also the single hops from every post.
     pub mobility: bool,
+    /// Whether the question is about landing sites, each of which is a start by itself.
+    pub ranks_sites: bool,
     /// Also the post that the last hop to each post comes from.
     pub predecessors: bool,
     /// Also trials along the path to every goal.

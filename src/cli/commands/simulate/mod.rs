@@ -3,6 +3,7 @@
 mod experiment;
 mod legs;
 mod over_mesh;
+mod targets;
 mod travel;
 
 use chta::{
@@ -39,6 +40,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     }
     if loaded.case.scenario.drives().is_some() {
         return travel::run(args, &loaded);
+    }
+    if loaded.case.scenario.mission.is_some() {
+        return targets::run(args, &loaded);
     }
     // All options are checked before the search, which may take long.
     args.check(&loaded.case)?;

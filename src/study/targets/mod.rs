@@ -1,0 +1,10 @@
+//! Missions over several targets: plans, and their trials.
+
+#[cfg(feature = "plot")]
+mod picture;
+mod plan;
+mod search;
+mod trials;
+
+pub use plan::{TargetsPlanned, targets_plan};
+pub use trials::{TargetsSimulated, targets_simulate};
