@@ -1,5 +1,6 @@
 //! Layers: against the cells one by one, against a mask of the same cells, and in every form that a hop, a chain, a leg and a trial has.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
+#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small rasters")]
 
 use std::sync::Arc;
 

@@ -30,9 +30,8 @@ fn is_off_a_mesh(key: &Key) -> bool {
     matches!(
         (key.table, key.name),
         ("surface", "keep_out" | "keep_in" | "friction_raster")
-            | ("layer", _)
             | ("hopper", "footprint_m" | "roughness_max_m")
-            | ("contact", _)
+            | ("contact" | "layer", _)
             | ("terrain", "start_x_m" | "goal_x_m" | "accept_map_scale" | "via_m" | "via_lonlat_deg")
             | ("search", "points_per_segment" | "node_spacing_max_m" | "split" | "risk" | "risk_extra_hops_max")
             | ("budget", "estimated_success_min")
