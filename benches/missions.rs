@@ -65,6 +65,7 @@ fn main() {
         hops_max: None,
         amounts: Vec::new(),
         memory_max_bytes: None,
+        ranks_sites: false,
     };
     let prepared = PreparedMap::new(&question).expect("a terrain");
     let rover = &scenario.drive.as_ref().expect("wheels").rover;

@@ -77,7 +77,7 @@ impl Settling {
         match self {
             Self::BeforeAllBut(_) => from == spared,
             Self::AfterAllBut(_) => to == spared,
-            Self::AfterAll => false,
+            Self::AfterAll | Self::BeforeAll => false,
         }
     }
 }
@@ -138,7 +138,7 @@ impl<'a> LegOffers<'a> {
             let spared = match self.settling {
                 Settling::BeforeAllBut(start) => Some(start),
                 Settling::AfterAllBut(goal) => hops.node_at(goal),
-                Settling::AfterAll => None,
+                Settling::AfterAll | Settling::BeforeAll => None,
             };
             let least = |is_spared| hops.runs_m().map(|run_m| self.settled(&self.least.of_any_hop(run_m), is_spared)).collect();
             Tables { hops, least: [least(false), least(true)], spared }

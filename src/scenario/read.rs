@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::{
-    Budget, DriveKeys, Entries, LayerKeys, LegsKeys, MeshSearch, MissionKeys, Place, ProblemKind, Route, ScenarioProblem, TerrainSource,
-    UncertaintyKeys,
+    Budget, DriveKeys, Entries, LayerKeys, LegsKeys, MeshSearch, MissionKeys, Place, ProblemKind, Route, ScenarioProblem,
+    TerrainSource, UncertaintyKeys,
     propulsion::{self, landing},
     terrain_source::{terrain, via},
 };

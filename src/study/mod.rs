@@ -119,10 +119,10 @@ pub use require::{RangeProblem, RequireError, Required, Requirement, require};
 pub use schema::SchemaKind;
 pub use sense::TrialGround;
 pub use simulate::{SimulateError, SimulateOptions, Simulated, Trials, simulate};
+pub use sites::{Candidates, SitesQuestion, SitesStudy, sites};
 pub use stance::{ContactsError, StanceError, StanceQuestion, StanceTerrain, Stood, contacts_of, stand};
 #[cfg(feature = "plot")]
 pub use stance_picture::contacts_picture;
-pub use sites::{Candidates, SitesQuestion, SitesStudy, sites};
 pub use swept_key::SweptKey;
 pub use targets::{TargetsPlanned, TargetsSimulated, targets_plan, targets_simulate};
 pub use trade::{CellError, Trade, TradeError, TradedCells, Varied, verdict};

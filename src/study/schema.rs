@@ -8,8 +8,8 @@ use crate::{
     report::{
         ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, LegsPlanAnswer,
         LegsSimulateAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer,
-        PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer, SizeAnswer, StanceAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer,
-        TravelMapAnswer, TravelSimulateAnswer,
+        PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer, SizeAnswer, StanceAnswer, TargetsAnswer,
+        TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
     },
     scenario::{robot_schema, scenario_schema},
 };

@@ -8,8 +8,8 @@ use chta::arena::ArenaKeys;
 use chta::report::{
     ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer,
     LegsPlanAnswer, LegsSimulateAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer,
-    MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer, SizeAnswer, StanceAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer,
-    TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+    MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer, SizeAnswer, StanceAnswer,
+    TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
 use serde::{Serialize, de::DeserializeOwned};

@@ -5,8 +5,8 @@ mod journeys;
 mod maps;
 mod position;
 mod setup;
-mod stance;
 mod sites;
+mod stance;
 mod synth;
 mod terrains;
 
@@ -28,8 +28,8 @@ pub(crate) use maps::{FanArgs, MapArgs, NodeSpacing};
 pub(crate) use position::{Position, place};
 use position::{lon_lat, map_point, position};
 pub(crate) use setup::{CompletionsArgs, ManArgs, SchemaArgs};
-pub(crate) use stance::StanceArgs;
 pub(crate) use sites::SitesArgs;
+pub(crate) use stance::StanceArgs;
 pub(crate) use synth::{MeshArg, SynthArgs};
 pub(crate) use terrains::SliceArgs;
 

@@ -188,7 +188,7 @@ impl LegGraph for Product<'_> {
         let (set, node) = (state / self.nodes, state % self.nodes);
         let offers = if set == 0 && node == self.stops[0] { &self.first } else { &self.later };
         let mut inner = InSet { product: self, set, visitor };
-        offers.visit((SurfaceNode::of_index(node), Side::Start), &|_| true, &mut inner, &mut self.meter.counter())?;
+        offers.visit((SurfaceNode::of_index(node), Side::Start), &|_| true, &mut inner, None, &mut self.meter.counter())?;
         Ok(())
     }
 
