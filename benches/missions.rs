@@ -46,7 +46,7 @@ fn main() {
     let scenario = Scenario::new(Entries::from_toml(&source)).expect("a sound scenario");
     let given: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
     let number = |place: usize, usual: f64| given.get(place).map_or(usual, |word| word.parse().expect("a number"));
-    let dem = given.first().map_or_else(|| root.join("data/terrain/mars_crater_field.tif"), |file| file.into());
+    let dem = given.first().map_or_else(|| root.join("data/terrain/mars_crater_field.tif"), Into::into);
     let start = MapPoint::new(number(1, 30.0), number(2, 30.0));
     let goal = MapPoint::new(number(3, 180.0), number(4, 180.0));
     let question = MapQuestion {

@@ -153,7 +153,7 @@ fn views(sheet: &mut Sheet, robot: &StandingRobot, top_mm: f64) -> f64 {
     let above = |at: Vector3<f64>| [at.x, at.y];
     let points: Vec<Vector3<f64>> =
         robot.boxes.iter().flatten().copied().chain(robot.feet.iter().flat_map(|foot| [foot.hip_m, foot.foot_m])).collect();
-    let size_m = points.iter().map(|point| point.norm()).fold(0.0, f64::max).max(1e-9);
+    let size_m = points.iter().map(Vector3::norm).fold(0.0, f64::max).max(1e-9);
     let width_mm = 0.5 * (RIGHT_MM - LEFT_MM - GAP_MM);
     let high_mm = width_mm.min(HIGHEST_MM);
     // Room around the robot for the cone over it.
@@ -276,6 +276,9 @@ impl Rose {
     }
 }
 
+/// What one of the cones allows in a heading.
+type CutOf = fn(&RoseRecord) -> Option<ElevationRecord>;
+
 /// Draws the rose; where it ends.
 fn rose(sheet: &mut Sheet, figure: &StanceFigure<'_>, top_mm: f64) -> f64 {
     let rows = figure.rose;
@@ -295,7 +298,7 @@ fn rose(sheet: &mut Sheet, figure: &StanceFigure<'_>, top_mm: f64) -> f64 {
             sheet.area(outline, CONE, 0.7);
         }
     }
-    let kinds: [(fn(&RoseRecord) -> Option<ElevationRecord>, Pen, (f64, f64)); 2] =
+    let kinds: [(CutOf, Pen, (f64, f64)); 2] =
         [(|row| row.kc_plus, KC_PLUS_PEN, KC_PLUS_DASH_MM), (|row| row.kc, KC_PEN, KC_DASH_MM)];
     for (of, pen, (dash_mm, gap_mm)) in kinds {
         for end in [|a: &ElevationRecord| a.takeoff_angle_min_deg, |a: &ElevationRecord| a.takeoff_angle_max_deg] {

@@ -6,6 +6,8 @@ mod generate;
 mod hop;
 mod over_mesh;
 mod stances_again;
+#[cfg(test)]
+mod stances_tests;
 mod steps;
 mod timetable;
 

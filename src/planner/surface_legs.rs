@@ -226,13 +226,11 @@ impl<'a> LegOffers<'a> {
         *tested += unknown as u64;
         let hop = |(other, known): (&Candidate, &Option<Option<SlopeInterval>>)| {
             let (sight, heading) = other.sight;
-            match known {
-                Some(lofts) => lofts.map(|lofts| Feasible { sight, heading, lofts }),
-                None => {
-                    let (nodes, ends) = side.in_order((node, at), (other.node, &other.at));
-                    self.surface.between(nodes, ends, other.sight)
-                }
+            if let Some(lofts) = known {
+                return lofts.map(|lofts| Feasible { sight, heading, lofts });
             }
+            let (nodes, ends) = side.in_order((node, at), (other.node, &other.at));
+            self.surface.between(nodes, ends, other.sight)
         };
         let hops: Vec<Option<Feasible>> = if unknown < SHARED_FROM {
             candidates.iter().zip(&known).map(hop).collect()

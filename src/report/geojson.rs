@@ -52,7 +52,9 @@ pub fn mission_geojson(
     for leg in legs {
         let serde_json::Value::Object(mut properties) = serde_json::to_value(leg).ok()? else { return None };
         // They are the geometry.
-        ["takeoff_m", "landing_m", "waypoints_m", "steepest_at_m"].into_iter().for_each(|key| drop(properties.remove(key)));
+        for key in ["takeoff_m", "landing_m", "waypoints_m", "steepest_at_m"] {
+            properties.remove(key);
+        }
         let properties = flat(properties);
         match leg {
             TravelLegRecord::Drive(drive) => {

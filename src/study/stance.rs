@@ -27,7 +27,7 @@ pub enum StanceTerrain {
     /// A mesh, by its file and metres per unit.
     Mesh(PathBuf, f64),
     /// An elevation raster.
-    Dem(Dem),
+    Dem(Box<Dem>),
 }
 
 /// What is asked.

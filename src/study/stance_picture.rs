@@ -25,6 +25,7 @@ impl Stood {
             Some(refusal) => format!("{robot} does not stand: {refusal}"),
             None => verdict(&self.answer, robot),
         };
+        let scenario = &Scenario { hopper: *self.ground.mesh().envelope().hopper(), ..scenario.clone() };
         draw_stance(&StanceFigure {
             caption: Caption { title: title("Stance", scenario), lines: vec![conditions(scenario), result] },
             robot: self.stance.as_ref().map(|stance| self.standing(stance)),

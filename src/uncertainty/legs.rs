@@ -173,7 +173,9 @@ impl LegsMission {
                     |(draws, buffers), trial| self.tried(&rules, (options, trial), draws, buffers),
                 )
                 .collect();
-            tried.iter().for_each(|tried| sums.add(tried));
+            for tried in &tried {
+                sums.add(tried);
+            }
             done = end;
             meter.set_done(done - options.first_trial, options.trials);
             meter.report(Detail::Trials { reached_goal: sums.reached })?;

@@ -94,7 +94,7 @@ fn a_robot_with_legs_is_planned_from_stance_to_stance_and_tried() {
         assert!(status < 2, "{stderr}");
         serde_json::from_str::<serde_json::Value>(&stdout).unwrap()
     };
-    let document = json(&["plan", scenario, "--set", "search.contacts_max=120"]);
+    let document = json(&["plan", scenario, "--set", "search.contacts_max=60"]);
     assert_eq!((&document["verdict"], &document["verified"]), (&"traversable".into(), &true.into()), "{}", document["gap"]);
     let (stances, hops) = (document["stances"].as_array().unwrap(), document["hops"].as_u64().unwrap());
     assert_eq!(stances.len() as u64, hops + 1);
@@ -102,7 +102,7 @@ fn a_robot_with_legs_is_planned_from_stance_to_stance_and_tried() {
         let feet = stance["contacts"].as_array().unwrap();
         assert!(feet.iter().all(|foot| foot["outcome"] == "stands"), "three feet are needed: {stance}");
     }
-    let tried = json(&["simulate", scenario, "--set", "search.contacts_max=120", "--trials", "40", "--compare"]);
+    let tried = json(&["simulate", scenario, "--set", "search.contacts_max=60", "--trials", "40", "--compare"]);
     let records = tried["compare"].as_array().unwrap();
     assert_eq!(records.len(), 2);
     for record in records {
@@ -113,7 +113,7 @@ fn a_robot_with_legs_is_planned_from_stance_to_stance_and_tried() {
     let exact =
         ["takeoff_speed_sigma_fraction", "takeoff_angle_sigma_deg", "heading_sigma_deg"].map(|key| format!("uncertainty.{key}=0"));
     let exact: Vec<&str> = exact.iter().flat_map(|key| ["--set", key.as_str()]).collect();
-    let plain = json(&[&["simulate", scenario, "--set", "search.contacts_max=120", "--trials", "10"][..], &exact].concat());
+    let plain = json(&[&["simulate", scenario, "--set", "search.contacts_max=60", "--trials", "10"][..], &exact].concat());
     assert_eq!(plain["simulation"]["success_rate"], 1.0, "{}", plain["simulation"]);
 }
 

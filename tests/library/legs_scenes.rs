@@ -130,7 +130,9 @@ fn ends(scene: &Scene, ground: &StanceGround) -> [Stance; 2] {
 }
 
 fn planned(scene: &Scene, ground: &StanceGround, ends: &[Stance; 2], seed: u64) -> GrownRoadmap<Stance> {
-    let [min, max] = scene.bounds.map(Point3::from);
+    // Of the root: the ground under it may be a leg lower.
+    let [low, max] = scene.bounds.map(Point3::from);
+    let min = low - Vector3::z() * ground.heights_m()[1];
     let contacts = ContactSampler::new(ground.mesh(), Some(SpaceBounds { min, max }), 0.0, seed).unwrap();
     let mut sampler = StanceSampler::new(ground, contacts, seed);
     let objective = Objective::new(vec![Amount::Hops, Amount::ArcLength]).unwrap();

@@ -1,4 +1,6 @@
 //! Robot files: the shipped ones, the table of their keys, their schema, and what is refused or said.
+
+#![allow(clippy::print_stderr, reason = "a skipped test says why")]
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::{
@@ -28,7 +30,7 @@ fn every_shipped_robot_is_read_without_a_warning() {
         let RobotFile { robot, warnings, .. } = read_robot(file).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(warnings, [""; 0], "{}", file.display());
         // Every foot reaches below the trunk, and stands away from it.
-        let bottom = robot.trunk().iter().flat_map(|part| part.corners_m()).map(|corner| corner.z).fold(0.0, f64::min);
+        let bottom = robot.trunk().iter().flat_map(chta::world::TrunkBox::corners_m).map(|corner| corner.z).fold(0.0, f64::min);
         for limb in robot.limbs() {
             assert!(limb.bounds()[0].z < bottom, "{}: {}", robot.name(), limb.name);
         }
@@ -69,7 +71,7 @@ fn what_a_file_states_is_what_the_robot_has() {
         panic!("no shell")
     };
     assert_eq!((name.as_str(), *hip_m, *force_max_n), ("a", Point3::new(1.0, 2.0, 3.0), Some(9.0)));
-    assert_eq!(friction.map(|cone| cone.coefficient()), Some(0.7));
+    assert_eq!(friction.map(chta::world::FrictionCone::coefficient), Some(0.7));
     assert_eq!((shell.radius_min_m(), shell.radius_max_m()), (0.1, 0.3));
     assert!(
         (shell.axis().into_inner() - Vector3::new(0.0, 0.6, -0.8)).norm() < 1e-15
@@ -212,7 +214,7 @@ fn a_trunk_box_is_that_around_its_mesh() {
 fn workspaces_of_real_robots_are_read() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/limbs");
     if !folder.exists() {
-        println!("skipped: {} is absent", folder.display());
+        eprintln!("skipped: {} is absent", folder.display());
         return;
     }
     let (mut read, mut convex) = (0, 0);
@@ -222,7 +224,7 @@ fn workspaces_of_real_robots_are_read() {
         for entry in fs::read_dir(folder.join(group)).unwrap() {
             let path = entry.unwrap().path();
             let name = path.file_name().unwrap().to_string_lossy().to_lowercase();
-            if !name.contains("rom") || !name.ends_with(".stl") {
+            if !name.contains("rom") || std::path::Path::new(&name).extension().is_none_or(|end| end != "stl") {
                 continue;
             }
             let text = LIMB

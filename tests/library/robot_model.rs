@@ -1,4 +1,6 @@
 //! URDFs of real robots: read as urdf-rs reads them, forward kinematics by a second road, inverse kinematics against points that forward kinematics gave.
+
+#![allow(clippy::print_stderr, reason = "a skipped test says why")]
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::{
@@ -26,7 +28,7 @@ const FEET: [(&str, &str); 5] = [
 fn shared() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/limbs");
     if !folder.exists() {
-        println!("skipped: {} is absent", folder.display());
+        eprintln!("skipped: {} is absent", folder.display());
         return None;
     }
     Some(folder)

@@ -137,6 +137,7 @@ fn toml() -> impl Strategy<Value = String> {
             ("mission", "targets_m") => on_targets && friction,
             ("mission", "targets_lonlat_deg") => on_targets && !friction,
             ("mission", _) => on_targets,
+            ("robot", _) => in_space && friction,
             ("drive", name) => on_wheels && name != "idle_power_w",
             ("search", "risk") | ("contact", _) if on_wheels => false,
             ("search", "planner" | "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => in_space,
@@ -175,6 +176,7 @@ fn toml() -> impl Strategy<Value = String> {
             let value = match (key.table, key.name) {
                 ("terrain", "mesh") if in_space => Some("\"cave.stl\"".to_owned()),
                 ("mission", "targets_m" | "targets_lonlat_deg") if on_targets => Some("[[1.5, 2.0], [-7.25, 3.0]]".to_owned()),
+                ("robot", "file") if in_space && friction => Some("\"legs.toml\"".to_owned()),
                 ("drive", "speed_m_s") if on_wheels => Some("0.5".to_owned()),
                 ("drive", "slope_up_max_deg") if on_wheels => Some("20.0".to_owned()),
                 ("drive", "wheelbase_m") if on_wheels => Some("1.5".to_owned()),
@@ -259,6 +261,7 @@ fn many_generated_scenarios_are_valid() {
 
 /// Every key given is in the document with its value: none is lost.
 #[test]
+#[allow(clippy::too_many_lines, reason = "one table of the keys that others need")]
 fn every_key_reaches_the_document() {
     let alone = |key: &Key| match key.kind {
         Kind::Number { max, .. } if max < 12.5 => "0.5",
@@ -342,6 +345,7 @@ fn every_key_reaches_the_document() {
                 with("contact", "restitution_normal", "0.25");
                 with("contact", "restitution_tangential", "0.25");
             }
+            ("robot", "cone" | "up") => with("robot", "file", "robot.toml"),
             ("search", "risk_extra_hops_max") => with("search", "risk", "traded"),
             _ => {}
         }

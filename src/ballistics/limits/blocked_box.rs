@@ -97,13 +97,15 @@ pub fn blocked_lofts_of_box(
 }
 
 /// The border of the places of the plane of travel at which a box of fixed orientation meets a triangle: a convex polygon, by its corners in
-/// order, as horizontal distance from the take-off and height over it, m. Empty if there are none.
-pub fn border_of_box(triangle: &[Vector3<f64>; 3], flown: &FlownBox) -> Vec<ChainPoint> {
-    let mut points = Vec::new();
-    crossings(triangle, flown, |[x_m, z_m], _| points.push(ChainPoint::new(x_m, z_m)));
-    let mut border = [ChainPoint::new(0.0, 0.0); HULL_POINTS + 1];
-    if points.is_empty() { points } else { convex_hull(&mut points, &mut border).to_vec() }
+/// order, as horizontal distance from the take-off and height over it, m. Empty if there are none. `border`: where they are written.
+pub fn border_of_box<'a>(triangle: &[Vector3<f64>; 3], flown: &FlownBox, border: &'a mut BoxBorder) -> &'a [ChainPoint] {
+    let mut points = [ChainPoint::new(0.0, 0.0); HULL_POINTS];
+    let count = crossings(triangle, flown, |[x_m, z_m], count| points[count] = ChainPoint::new(x_m, z_m));
+    if count == 0 { &[] } else { convex_hull(&mut points[..count], border) }
 }
+
+/// The border of what a box meets, with room for the most corners.
+pub type BoxBorder = [ChainPoint; HULL_POINTS + 1];
 
 /// Visits places of the plane of travel whose convex hull holds all places at which a box meets a triangle, with their numbers; how many there
 /// are, at most [`HULL_POINTS`].

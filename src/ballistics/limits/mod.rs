@@ -17,7 +17,7 @@ mod terrain;
 pub use apex::apex_height;
 pub use blocked::blocked_lofts;
 pub use blocked_ball::{BALL_BOUND, BALL_CORNERS, blocked_lofts_of_ball};
-pub use blocked_box::{FlownBox, blocked_lofts_of_box, border_of_box};
+pub use blocked_box::{BoxBorder, FlownBox, blocked_lofts_of_box, border_of_box};
 pub use commanded::{takeoff_speed_level, takeoff_speed_min};
 pub use cones::{landing_cone, takeoff_cone};
 pub use flight_time::flight_time;

@@ -100,13 +100,15 @@ pub(crate) fn load_stance(args: &StanceArgs) -> Result<StanceInput, Failure> {
         StanceTerrain::Mesh(input.file.clone(), scale)
     } else {
         let read = DemOptions::default().no_data(scenario.no_data).read(&input.file);
-        StanceTerrain::Dem(read.map_err(|error| Failure::about(terrain, &error))?)
+        StanceTerrain::Dem(Box::new(read.map_err(|error| Failure::about(terrain, &error))?))
     };
     let warnings: Vec<String> = Purpose::Hop.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
     output::warn_all(common.quiet, &warnings);
     let mut files = vec![input.file.clone(), named];
     files.extend(robot.files.iter().cloned());
-    files.iter().for_each(|file| claims::reads(file));
+    for file in &files {
+        claims::reads(file);
+    }
     let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
     verbose::settings(&document, &scenario.search);
     let inputs = checksums(&files, &relative_name)?;

@@ -1,8 +1,8 @@
 //! The windows of a hop from one stance to another.
 //!
 //! ```text
-//!     piece k of n: the root between k X / n and (k + 1) X / n from the take-off, the trunk turned to the middle of the piece,
-//!     its boxes grown on every side by r theta / (2 n): r the distance of the farthest corner from the root, theta the whole turn
+//!     a piece from share a to share b: the root between a X and b X from the take-off, the trunk turned to the middle of the piece, its
+//!     boxes grown on every side by r theta (b - a) / 2: r the distance of the farthest corner from the root, theta the whole turn
 //! ```
 
 use std::ops::ControlFlow;
@@ -13,7 +13,7 @@ use super::{Pose, Stance, StanceBuffers, StanceGround};
 use crate::{
     ballistics::{
         Arc, LineOfSight,
-        limits::{FlownBox, blocked_lofts_of_box, border_of_box},
+        limits::{BoxBorder, FlownBox, blocked_lofts_of_box, border_of_box},
     },
     ground::{
         MeshCourse, MeshTakeoffSet,
@@ -27,6 +27,9 @@ use crate::{
 
 /// The greatest turn of the trunk within a piece of an arc, rad: ten degrees.
 const TURN_OF_PIECE: f64 = 0.174_532_925_199_432_95;
+
+/// How often the pieces are halved towards take-off and landing.
+const HALVED: i32 = 7;
 
 /// A trunk over a piece of an arc.
 #[derive(Clone, Debug)]
@@ -149,12 +152,13 @@ impl StanceGround {
         let (run_m, near_m) = (course.sight.run_m(), self.mesh().tree().resolution_m());
         let (radius_m, trunks) = self.trunks(course, [takeoff.pose(), landing.pose()]);
         let mut room = LeastRoom::new(arc, self.mesh().envelope().clearance(), near_m);
+        let mut buffer: BoxBorder = std::array::from_fn(|_| ChainPoint::new(0.0, 0.0));
         let enters = |[low, high]: [ChainPoint; 2]| high.x_m >= 0.0 && low.x_m <= run_m;
         let _ = self.mesh().tree().beside(&course.plane, radius_m, enters, |_, corners| {
             let triangle = corners.map(|corner| course.plane.framed(corner));
             for trunk in &trunks {
                 for part in &trunk.boxes {
-                    let border = border_of_box(&triangle, part);
+                    let border = border_of_box(&triangle, part, &mut buffer);
                     for (i, from) in border.iter().enumerate() {
                         if let Some([from, to]) = part_between(trunk.between_m, [*from, border[(i + 1) % border.len()]]) {
                             room.beside(from, to);
@@ -171,28 +175,49 @@ impl StanceGround {
     fn trunks(&self, course: &MeshCourse, [from, to]: [&Pose; 2]) -> (f64, Vec<FlownTrunk>) {
         let robot = self.robot();
         let corner_m = robot.trunk_radius_m();
-        let turn = from.turn.angle_to(&to.turn);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 19 pieces")]
-        let pieces = if corner_m > 0.0 { ((turn / TURN_OF_PIECE).ceil().max(1.0)) as u32 } else { 1 };
-        let grown_m = corner_m * turn / (2.0 * f64::from(pieces));
+        let turn = if corner_m > 0.0 { from.turn.angle_to(&to.turn) } else { 0.0 };
+        let shares = shares_of(turn);
         let point = [TrunkBox::upright(nalgebra::Point3::origin(), Vector3::zeros())];
         let parts = if robot.trunk().is_empty() { &point[..] } else { robot.trunk() };
-        let trunks = (0..pieces).map(|piece| {
-            let share = |at: f64| (f64::from(piece) + at) / f64::from(pieces);
-            let turn = turned(from, to, share(0.5));
+        let run_m = course.sight.run_m();
+        let mut most_m: f64 = 0.0;
+        let trunks = shares.windows(2).map(|piece| {
+            let grown_m = 0.5 * corner_m * turn * (piece[1] - piece[0]);
+            most_m = most_m.max(grown_m);
+            let turn = turned(from, to, f64::midpoint(piece[0], piece[1]));
             let framed = |direction: Vector3<f64>| course.plane.turned(turn * direction);
             let boxes = parts.iter().map(|part| {
                 let half = part.half_m.add_scalar(grown_m);
                 let edges = [0, 1, 2].map(|axis| framed(part.axes * Vector3::ith(axis, half[axis])));
                 FlownBox::new(framed(part.centre_m.coords), edges)
             });
-            let run_m = course.sight.run_m();
-            let end_m = if piece + 1 == pieces { run_m } else { run_m * share(1.0) };
-            FlownTrunk { between_m: [run_m * share(0.0), end_m], boxes: boxes.collect() }
+            let end_m = if piece[1] == 1.0 { run_m } else { run_m * piece[1] };
+            FlownTrunk { between_m: [run_m * piece[0], end_m], boxes: boxes.collect() }
         });
+        let trunks = trunks.collect();
         // A corner of a grown box is farther out by at most the diagonal of what it grew by.
-        (corner_m + 3.0_f64.sqrt() * grown_m, trunks.collect())
+        (corner_m + 3.0_f64.sqrt() * most_m, trunks)
     }
+}
+
+/// The shares of a flight at which its pieces begin and end: halved towards take-off and landing, where the trunk is near to the ground, and such
+/// that it turns by at most [`TURN_OF_PIECE`] in any.
+fn shares_of(turn: f64) -> Vec<f64> {
+    if turn == 0.0 {
+        return vec![0.0, 1.0];
+    }
+    let halved = (1..=HALVED).rev().map(|power| 0.5_f64.powi(power));
+    let first: Vec<f64> = std::iter::once(0.0).chain(halved).collect();
+    let ends = first.iter().copied().chain(first.iter().rev().skip(1).map(|share| 1.0 - share));
+    let ends: Vec<f64> = ends.collect();
+    let mut shares = vec![0.0];
+    for pair in ends.windows(2) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 9 pieces of a quarter of a turn")]
+        let pieces = (turn * (pair[1] - pair[0]) / TURN_OF_PIECE).ceil().max(1.0) as u32;
+        shares.extend((1..pieces).map(|piece| pair[0] + (pair[1] - pair[0]) * f64::from(piece) / f64::from(pieces)));
+        shares.push(pair[1]);
+    }
+    shares
 }
 
 /// How the trunk is turned at a share of the flight: evenly, the shorter way around.

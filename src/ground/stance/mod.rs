@@ -24,9 +24,6 @@ mod push;
 mod stand;
 mod trunk;
 
-#[cfg(test)]
-mod tests;
-
 use std::sync::Arc;
 
 use nalgebra::{Point3, Vector3};
@@ -36,7 +33,10 @@ pub use pose::Pose;
 pub use stand::{NoStance, Stance, TrunkHit};
 
 use super::{MeshBuffers, MeshGround};
-use crate::{ballistics::stance::ConeKind, world::Robot};
+use crate::{
+    ballistics::stance::ConeKind,
+    world::{Robot, TrunkBox},
+};
 
 /// A robot with legs over a mesh: all that a hop between two of its stances depends on. A clone shares mesh and robot.
 #[derive(Clone, Debug)]
@@ -113,7 +113,7 @@ impl StanceGround {
     /// limb leaves it.
     pub fn heights_m(&self) -> [f64; 2] {
         let lowest = |low: f64, z: f64| low.min(z);
-        let trunk = self.robot.trunk().iter().flat_map(|part| part.corners_m()).map(|corner| corner.z).fold(0.0, lowest);
+        let trunk = self.robot.trunk().iter().flat_map(TrunkBox::corners_m).map(|corner| corner.z).fold(0.0, lowest);
         let limbs = self.robot.limbs().iter().map(|limb| limb.bounds()[0].z).fold(0.0, lowest);
         [(-trunk).min(-limbs), -limbs]
     }

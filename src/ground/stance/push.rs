@@ -24,11 +24,16 @@ use crate::{
     world::Limit,
 };
 
-/// Arcs looked at over a window.
+/// Steps in which the arcs of a window are looked at.
 const ARCS: u32 = 7;
 
 /// Halvings of the step between an arc that is allowed and one that is not.
 const HALVINGS: u32 = 14;
+
+/// The same for the spin, of which one arc takes a hundred microseconds: what it allows is one interval, and its ends need not be found closely, since
+/// each is on the side that is allowed.
+const ARCS_OF_SPIN: u32 = 2;
+const HALVINGS_OF_SPIN: u32 = 6;
 
 /// A spin this share of a limit above it is the limit, by the rounding of its least value.
 const ROUNDED: f64 = 1.0e-6;
@@ -58,49 +63,44 @@ impl StanceGround {
 
     /// The limit that refuses a push of a stance, if one does: `velocity_m_s` of the take-off, or the reverse of that of the landing.
     pub fn refuses_push(&self, stance: &Stance, velocity_m_s: Vector3<f64>) -> Option<Limit> {
-        let cone = stance.cone()?;
-        let speed_m_s = velocity_m_s.norm();
+        self.refuses_strength(stance, velocity_m_s).or_else(|| self.refuses_spin(stance, velocity_m_s))
+    }
+
+    /// The stroke or the forces, if they refuse a push.
+    fn refuses_strength(&self, stance: &Stance, velocity_m_s: Vector3<f64>) -> Option<Limit> {
+        let (cone, stroke_m, speed_m_s) = (stance.cone()?, self.robot().stroke_m()?, velocity_m_s.norm());
         if speed_m_s == 0.0 {
             return None;
         }
         let g = self.mesh().envelope().gravity_m_s2();
-        if let Some(stroke_m) = self.robot().stroke_m() {
-            let ahead = velocity_m_s.xy().norm();
-            let along = velocity_m_s.xy().try_normalize(0.0).unwrap_or_else(Vector2::x);
-            let force = push_force_n(velocity_m_s.z / ahead.max(f64::MIN_POSITIVE), speed_m_s, stroke_m, g);
-            if !cone.contains(Vector3::new(along.x * force.x, along.y * force.x, force.y)) {
-                return Some(Limit::Stroke);
-            }
-            if let (Some(limbs), Some(mass_kg)) = (self.limbs(stance), self.mass_kg()) {
-                let most = greatest_push_speed_m_s(&limbs, velocity_m_s / speed_m_s, stroke_m, mass_kg, g);
-                if most.is_none_or(|most| most.lower < speed_m_s) {
-                    return Some(Limit::Force);
-                }
-            }
+        let ahead = velocity_m_s.xy().norm();
+        let along = velocity_m_s.xy().try_normalize(0.0).unwrap_or_else(Vector2::x);
+        let force = push_force_n(velocity_m_s.z / ahead.max(f64::MIN_POSITIVE), speed_m_s, stroke_m, g);
+        if !cone.contains(Vector3::new(along.x * force.x, along.y * force.x, force.y)) {
+            return Some(Limit::Stroke);
         }
-        if let Some(most) = self.spin_max_m2_s() {
-            let least = least_spin_m2_s(&self.arms(stance), velocity_m_s);
-            let tolerance = ROUNDED * (most + speed_m_s * self.robot().reach_m());
-            if least.is_none_or(|least| least.upper > most + tolerance) {
-                return Some(Limit::Spin);
-            }
-        }
-        None
+        let (limbs, mass_kg) = (self.limbs(stance)?, self.mass_kg()?);
+        let most = greatest_push_speed_m_s(&limbs, velocity_m_s / speed_m_s, stroke_m, mass_kg, g);
+        most.is_none_or(|most| most.lower < speed_m_s).then_some(Limit::Force)
+    }
+
+    /// The spin, if it refuses a push.
+    fn refuses_spin(&self, stance: &Stance, velocity_m_s: Vector3<f64>) -> Option<Limit> {
+        stance.cone()?;
+        let (most, speed_m_s) = (self.spin_max_m2_s()?, velocity_m_s.norm());
+        let least = least_spin_m2_s(&self.arms(stance), velocity_m_s);
+        let tolerance = ROUNDED * (most + speed_m_s * self.robot().reach_m());
+        least.is_none_or(|least| least.upper > most + tolerance).then_some(Limit::Spin)
     }
 
     /// The limit that refuses the push or the stop of an arc; `heading`: the horizontal direction of travel.
-    pub fn refuses_arc(&self, [takeoff, landing]: [&Stance; 2], heading: Vector2<f64>, arc: &Arc) -> Option<Limit> {
-        let velocity = |slope: f64, speed_m_s: f64| {
-            let ahead = speed_m_s / libm::hypot(1.0, slope);
-            Vector3::new(heading.x * ahead, heading.y * ahead, slope * ahead)
-        };
-        let push = velocity(arc.takeoff_slope(), arc.takeoff_speed_m_s());
-        let stop = velocity(arc.landing_slope(), arc.landing_speed_m_s());
-        self.refuses_push(takeoff, push).or_else(|| self.refuses_push(landing, -stop))
+    pub fn refuses_arc(&self, ends: [&Stance; 2], heading: Vector2<f64>, arc: &Arc) -> Option<Limit> {
+        let [(takeoff, push), (landing, stop)] = pushes(ends, heading, arc);
+        self.refuses_push(takeoff, push).or_else(|| self.refuses_push(landing, stop))
     }
 
-    /// The part of a window whose arcs the limits of a push allow: the longest of those found in steps, each end on the side that is allowed;
-    /// `None` if they allow none. And the limit beyond each end that was moved.
+    /// The part of a window whose arcs the limits of a push allow: the longest of those found in steps, each end on the side that is allowed,
+    /// and the limit beyond each end that was moved; or the limit that allows none.
     pub(super) fn pushable(
         &self,
         ends: [&Stance; 2],
@@ -108,33 +108,20 @@ impl StanceGround {
         window: SlopeInterval,
     ) -> Result<(SlopeInterval, [Option<Limit>; 2]), Limit> {
         let g = self.mesh().envelope().gravity_m_s2();
-        let refusal = |loft: f64| self.refuses_arc(ends, heading, &Arc::new(sight, loft, g));
-        let lofts: Vec<f64> = (0..=ARCS).map(|step| loft_at_share(sight, window, f64::from(step) / f64::from(ARCS))).collect();
-        let refusals: Vec<Option<Limit>> = lofts.iter().map(|loft| refusal(*loft)).collect();
-        let mut best: Option<[usize; 2]> = None;
-        let mut from = 0;
-        for (at, refused) in refusals.iter().enumerate() {
-            if refused.is_some() {
-                from = at + 1;
-            } else if best.is_none_or(|[first, last]| at - from > last - first) {
-                best = Some([from, at]);
-            }
-        }
-        let Some([first, last]) = best else { return Err(refusals.into_iter().flatten().next().unwrap_or(Limit::Stroke)) };
-        let between = |mut allowed: f64, mut refused: f64| {
-            for _ in 0..HALVINGS {
-                let middle = f64::midpoint(allowed, refused);
-                if refusal(middle).is_none() { allowed = middle } else { refused = middle }
-            }
-            allowed
+        let refusal = |loft: f64, of: &dyn Fn(&Stance, Vector3<f64>) -> Option<Limit>| {
+            let [takeoff, landing] = pushes(ends, heading, &Arc::new(sight, loft, g));
+            of(takeoff.0, takeoff.1).or_else(|| of(landing.0, landing.1))
         };
-        let mut found = SlopeInterval { lower: lofts[first], upper: lofts[last] };
-        let mut by = [None; 2];
-        if first > 0 {
-            (found.lower, by[0]) = (between(lofts[first], lofts[first - 1]), refusals[first - 1]);
+        let (mut found, mut by) = (window, [None; 2]);
+        if self.robot().stroke_m().is_some() {
+            let strength = |stance: &Stance, velocity| self.refuses_strength(stance, velocity);
+            (found, by) = narrowed(sight, found, (ARCS, HALVINGS), |loft| refusal(loft, &strength))?;
         }
-        if last + 1 < lofts.len() {
-            (found.upper, by[1]) = (between(lofts[last], lofts[last + 1]), refusals[last + 1]);
+        if self.spin_max_m2_s().is_some() {
+            let spin = |stance: &Stance, velocity| self.refuses_spin(stance, velocity);
+            let moved;
+            (found, moved) = narrowed(sight, found, (ARCS_OF_SPIN, HALVINGS_OF_SPIN), |loft| refusal(loft, &spin))?;
+            by = [moved[0].or(by[0]), moved[1].or(by[1])];
         }
         Ok((found, by))
     }
@@ -169,4 +156,50 @@ impl StanceGround {
     pub fn spin_of(&self, stance: &Stance, velocity_m_s: Vector3<f64>) -> Option<f64> {
         Some(least_spin_m2_s(&self.arms(stance), velocity_m_s)?.upper)
     }
+}
+
+/// The push at the take-off of an arc and the one that stops its landing, each with its stance.
+fn pushes<'a>([takeoff, landing]: [&'a Stance; 2], heading: Vector2<f64>, arc: &Arc) -> [(&'a Stance, Vector3<f64>); 2] {
+    let velocity = |slope: f64, speed_m_s: f64| {
+        let ahead = speed_m_s / libm::hypot(1.0, slope);
+        Vector3::new(heading.x * ahead, heading.y * ahead, slope * ahead)
+    };
+    let push = velocity(arc.takeoff_slope(), arc.takeoff_speed_m_s());
+    [(takeoff, push), (landing, -velocity(arc.landing_slope(), arc.landing_speed_m_s()))]
+}
+
+/// The longest part of a window without a refusal at steps of its take-off angle, whose ends are brought near to the refusals beyond them.
+fn narrowed(
+    sight: LineOfSight,
+    window: SlopeInterval,
+    (steps, halvings): (u32, u32),
+    refusal: impl Fn(f64) -> Option<Limit>,
+) -> Result<(SlopeInterval, [Option<Limit>; 2]), Limit> {
+    let lofts: Vec<f64> = (0..=steps).map(|step| loft_at_share(sight, window, f64::from(step) / f64::from(steps))).collect();
+    let refusals: Vec<Option<Limit>> = lofts.iter().map(|loft| refusal(*loft)).collect();
+    let mut best: Option<[usize; 2]> = None;
+    let mut from = 0;
+    for (at, refused) in refusals.iter().enumerate() {
+        if refused.is_some() {
+            from = at + 1;
+        } else if best.is_none_or(|[first, last]| at - from > last - first) {
+            best = Some([from, at]);
+        }
+    }
+    let Some([first, last]) = best else { return Err(refusals.into_iter().flatten().next().unwrap_or(Limit::Stroke)) };
+    let between = |mut allowed: f64, mut refused: f64| {
+        for _ in 0..halvings {
+            let middle = f64::midpoint(allowed, refused);
+            if refusal(middle).is_none() { allowed = middle } else { refused = middle }
+        }
+        allowed
+    };
+    let (mut found, mut by) = (SlopeInterval { lower: lofts[first], upper: lofts[last] }, [None; 2]);
+    if first > 0 {
+        (found.lower, by[0]) = (between(lofts[first], lofts[first - 1]), refusals[first - 1]);
+    }
+    if last + 1 < lofts.len() {
+        (found.upper, by[1]) = (between(lofts[last], lofts[last + 1]), refusals[last + 1]);
+    }
+    Ok((found, by))
 }

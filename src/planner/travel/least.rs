@@ -28,6 +28,7 @@ pub(super) struct LeastLeft {
 }
 
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one value for a search")]
 enum By {
     Hops(LeastAmounts),
     Lines(Lines),

@@ -238,7 +238,7 @@ fn hops_in(walked: &[Stretch]) -> Vec<Hop> {
         Stretch::Hops(path) => path.hops.as_slice(),
         Stretch::Drive(_) => &[],
     });
-    hops.cloned().collect()
+    hops.copied().collect()
 }
 
 fn point(place: &MapPosition) -> [f64; 3] {

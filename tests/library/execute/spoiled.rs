@@ -297,6 +297,10 @@ fn every_spoiled_hop_is_refused_under_its_limits_name() {
             Limit::TakeoffAngleStep,
             Limit::TakeoffSpeedStep,
             Limit::HeadingStep,
+            // Of robots with legs: src/path/stances_tests.rs.
+            Limit::Stroke,
+            Limit::Force,
+            Limit::Spin,
         ];
         let least = if elsewhere.contains(&limit) { 0 } else { 300 };
         assert!(tally.by_limit[limit.index()] >= least, "{limit} was tested only {} times", tally.by_limit[limit.index()]);

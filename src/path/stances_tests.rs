@@ -2,12 +2,11 @@
 
 use nalgebra::{Point3, Vector2, Vector3};
 
-use super::{LimbOutcome, NoStance, Pose, Stance, StanceBuffers, StanceGround, StandsUp};
+use super::{flown_by_stances, path_over_stances};
 use crate::{
     ballistics::{Arc, stance::ConeKind},
     draw::Draw,
-    ground::{MeshBuffers, MeshGround},
-    path::{flown_by_stances, path_over_stances},
+    ground::{LimbOutcome, MeshBuffers, MeshGround, NoStance, Pose, Stance, StanceBuffers, StanceGround, StandsUp},
     planner::roadmap::tests::{boxes, ground, mesh_of},
     quantity::Angle,
     world::{Contact, FrictionCone, Limb, Limit, RestSlope, Robot, RobotDescription, Shell, TrunkBox, Workspace},
@@ -133,9 +132,9 @@ fn windows_of_the_trunk_are_free_and_none_is_missed_between_equal_poses() {
                 let set = ground.takeoff_set(from, to).unwrap();
                 assert_eq!(set.windows().iter().map(|window| window.lofts).collect::<Vec<_>>(), lofts);
                 if lofts.is_empty() {
-                    shut += 1
+                    shut += 1;
                 } else {
-                    open += 1
+                    open += 1;
                 }
                 for window in lofts.iter().take(2) {
                     let loft = window.lower + (window.upper - window.lower) * draw.uniform(0.0, 1.0);
@@ -196,7 +195,10 @@ fn strokes_forces_and_spin_narrow_windows_by_name() {
     let cases = [
         (strong(400.0), None),
         (strong(14.0), Some(Limit::Force)),
-        (RobotDescription { spin_max_rad_s: Some(0.0), ..strong(400.0) }, Some(Limit::Spin)),
+        (
+            RobotDescription { spin_max_rad_s: Some(0.0), centre_of_mass_m: Point3::new(0.5, 0.0, 0.0), ..strong(400.0) },
+            Some(Limit::Spin),
+        ),
     ];
     for (robot, limit) in cases {
         let ground = standing(floor(), robot);
