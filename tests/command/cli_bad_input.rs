@@ -341,7 +341,7 @@ fn all_problems_of_a_scenario_are_reported_at_once_with_line_and_column() {
         "bad.toml:5:24: surface.friction_coefficient is -1, expected a number from 0 to 1e6",
         "bad.toml:6:26: surface.takeoff_from_slope_deg is [3], expected two angles in degrees",
         "bad.toml:9:9: terrain has both dem and chain, expected one of the two; remove one of them",
-        "bad.toml:10:2: unknown table [nothing]; the tables are body, hopper, surface, contact, terrain, search, drive, budget, derating, uncertainty, report",
+        "bad.toml:10:2: unknown table [nothing]; the tables are body, hopper, robot, surface, layer, contact, terrain, search, drive, budget, derating, uncertainty, mission, report",
         "bad.toml:12:10: search.effort is \"fun\", expected one of takeoff-speed, energy, time, peak-speed",
         "bad.toml:13:22: search.points_per_segment is 1.5, expected a whole number from 0 to 100000, or \"auto\"",
         "bad.toml:15:25: hopper.takeoff_speed_max_m_s is \"fast\", expected a number from 1e-9 to 1e5",
@@ -415,7 +415,7 @@ fn a_misspelt_key_gives_the_nearest_key_or_those_of_its_table() {
     for (key, said) in [
         ("hopper.speed", "the keys of [hopper] are takeoff_speed_max_m_s, landing_speed_max_m_s, clearance_m,"),
         ("terrain.x", "the keys of [terrain] are dem, mesh,"),
-        ("frogs.legs", "the tables are body, hopper, surface,"),
+        ("frogs.legs", "the tables are body, hopper, robot, surface, layer,"),
     ] {
         desk.refused(&["check", "scenario.toml", "--set", &format!("{key}=1")], &["unknown key", said]);
         assert!(!desk.run(&["check", "scenario.toml", "--set", &format!("{key}=1")]).stderr.contains("nearest"), "{key}");

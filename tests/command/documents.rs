@@ -18,12 +18,15 @@ use crate::desk::chta;
 
 /// Commands whose answers have every part that an answer may have: found and refused, with proof, with trials, on maps with and without
 /// a projection, with propellant, with commands in steps, with risk.
-const COMMANDS: [&str; 62] = [
+const COMMANDS: [&str; 65] = [
     "plan data/drive/mars_rover.toml --alternatives",
     "plan data/drive/mars_rover.toml --set budget.mission_time_max_s=100",
     "plan data/drive/mars_rover.toml --set drive.travel=drive --set drive.slope_up_max_deg=1",
     "map data/drive/mars_rover.toml --set drive.travel=drive --return",
     "simulate data/drive/mars_rover.toml --trials 50 --compare --success-min 0.1",
+    "plan data/missions/lunar_rille_targets.toml",
+    "simulate data/missions/lunar_rille_targets.toml --trials 5",
+    "sites data/terrain/mars_crater_field.tif --every 90 --scenario data/scenarios/mars_crater_field.toml",
     "stance data/mesh/rubble.obj --robot data/robots/three_legs.toml --at=0,0,0.5 --body moon --set surface.friction_coefficient=0.8",
     "stance data/mesh/rubble.obj --robot data/robots/four_legs.toml --at=0,0,0.5 --height-m 1 --body moon --set surface.friction_coefficient=0.8",
     "plan data/mesh_scenarios/three_legs.toml --set search.contacts_max=60",
@@ -103,8 +106,6 @@ pub(crate) fn documents() -> &'static [(String, String)] {
         commands.push("compare data/scenarios/simple.toml data/scenarios/simple_reduced.toml".to_owned());
         commands.push(format!("run data/scenarios/rolling_surely.toml -o {}", file("rolling")));
         commands.push(format!("run data/scenarios/cliff.toml -o {}", file("cliff")));
-        std::fs::write(file("contacts.csv"), "normal_x,normal_y,normal_z,friction_coefficient\n0,0,1,0.6\n").unwrap();
-        commands.push(format!("stance --contacts {}", file("contacts.csv")));
         let space = format!(
             "[body]\ngravity_m_s2 = 9.81\n[hopper]\ntakeoff_speed_max_m_s = 6\nlanding_speed_max_m_s = 6\n[surface]\nfriction_coefficient = 1\n\
              [terrain]\nmesh = '{}'\nroute = \"free\"\nstart_m = [2, 0, 1]\ngoal_m = [10, 0, 1]\n[search]\ncontacts_max = 60\n",

@@ -87,9 +87,9 @@ fn a_no_names_the_layer() {
     // One hop into the shade, limit by limit.
     let hop = ["hop", "level.asc", "--from", "18,10", "--to", "20,10", "--scenario", "free.toml"];
     let document = desk.json(&[&hop[..], &wide].concat());
-    assert_eq!((&document["feasible"], &document["conflict"]), (&json!(false), &json!(["layer:sun"])), "{document}");
+    assert_eq!((&document["feasible"], &document["binding"]["conflict"]), (&json!(false), &json!(["layer:sun"])), "{document}");
     let flight = desk.json(&[&hop[..], &wide, &["--set", "layer.sun.applies_to=flight"]].concat());
-    assert_eq!(flight["conflict"], json!(["layer:sun"]), "{flight}");
+    assert_eq!(flight["binding"]["conflict"], json!(["layer:sun"]), "{flight}");
     // A start in the shade.
     let ran = desk.run(&[&["check", "free.toml", "--start", "22,10"][..], &wide].concat());
     assert_eq!(ran.status, 1);

@@ -224,7 +224,7 @@ fn workspaces_of_real_robots_are_read() {
         for entry in fs::read_dir(folder.join(group)).unwrap() {
             let path = entry.unwrap().path();
             let name = path.file_name().unwrap().to_string_lossy().to_lowercase();
-            if !name.contains("rom") || std::path::Path::new(&name).extension().is_none_or(|end| end != "stl") {
+            if !name.contains("rom") || Path::new(&name).extension().is_none_or(|end| end != "stl") {
                 continue;
             }
             let text = LIMB

@@ -16,17 +16,15 @@ use super::{
 /// are every N-th node where hops begin, or the places of a file. With targets, sites that reach more of them come first, then those that
 /// reach them in fewer hops; without, those from which the greatest share of the nodes is reached.
 #[derive(Debug, ClapArgs)]
-#[command(
-    after_help = "Example:\n  chta sites data/terrain/mars_crater_field.tif --every 16 --scenario data/scenarios/mars_crater_field.toml --plot sites.svg"
-)]
+#[command(after_help = "Example:\n  chta sites data/scenarios/mars_crater_field.toml --every 16 --plot sites.svg")]
 pub(crate) struct SitesArgs {
     /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres; or a scenario (TOML) with terrain.dem; -: standard input
     #[arg(value_name = "DEM|SCENARIO")]
     pub(crate) dem: PathBuf,
-    /// Candidates: every N-th node in rows and columns where hops begin
+    /// Candidates: every N-th node in rows and columns where hops begin [default: none]
     #[arg(long, value_name = "N", value_parser = at_least_one, allow_negative_numbers = true, required_unless_present = "candidates")]
     pub(crate) every: Option<u32>,
-    /// Instead: candidates, CSV with `x_m,y_m`; the nearest nodes are used
+    /// Instead: candidates, CSV with `x_m,y_m`; the nearest nodes are used [default: none]
     #[arg(long, value_name = "FILE", conflicts_with = "every")]
     pub(crate) candidates: Option<PathBuf>,
     /// Target, map coordinates in m; the nearest node is used; may be repeated [default: the targets or the goal of SCENARIO]

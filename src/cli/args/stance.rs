@@ -10,10 +10,7 @@ use crate::cli::inputs::{DEFAULT_MAX_GIB, max_gib};
 
 /// Where a robot with legs can stand, and which way it may jump from there without slipping
 #[derive(Clone, Debug, ClapArgs)]
-#[command(
-    after_help = "Example:\n  chta stance data/terrain/mars_crater_field.tif --robot data/robots/three_legs.toml --at 60,60 --body Mars --set \
-                  surface.friction_coefficient=0.6"
-)]
+#[command(after_help = "Example:\n  chta stance data/mesh/rubble.obj --at=0,0,1 --scenario data/mesh_scenarios/three_legs.toml")]
 pub(crate) struct StanceArgs {
     /// Elevation raster, or mesh (OBJ, STL, PLY, z up), to stand on; absent with --contacts
     #[arg(value_name = "TERRAIN", required_unless_present = "contacts")]
@@ -21,7 +18,7 @@ pub(crate) struct StanceArgs {
     /// Robot (TOML): trunk, limbs, contacts needed [default: the scenario's robot.file]
     #[arg(long, value_name = "FILE", conflicts_with = "contacts")]
     pub(crate) robot: Option<PathBuf>,
-    /// Place, m, moved to the surface: X,Y on a map, X,Y,Z on a mesh
+    /// Place, m, moved to the surface: X,Y on a map, X,Y,Z on a mesh [default: none]
     #[arg(long, value_name = "X,Y[,Z]", value_parser = position, allow_hyphen_values = true, required_unless_present = "contacts")]
     pub(crate) at: Option<Position>,
     /// Which way the robot faces, degrees clockwise from +y [default: the stance with most feet and the widest beam, of 36 headings]
