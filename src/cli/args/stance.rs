@@ -30,7 +30,7 @@ pub(crate) struct StanceArgs {
     /// Which way is up for its trunk: along the normal of the ground, or against gravity [default: normal]
     #[arg(long, value_enum, conflicts_with = "contacts")]
     pub(crate) up: Option<UpArg>,
-    /// Instead of a robot: contacts (CSV) with `normal_x,normal_y,normal_z,friction_coefficient`, one row each
+    /// Instead of a robot: contacts (CSV) with `normal_x,normal_y,normal_z,friction_coefficient`, one row each [default: none]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["terrain", "at"])]
     pub(crate) contacts: Option<PathBuf>,
     /// Headings of the rose
