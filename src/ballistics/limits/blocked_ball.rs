@@ -34,7 +34,7 @@ pub const BALL_CORNERS: usize = 5;
 /// plane, as horizontal distance from the centre at take-off and height over it, m. The clearance is added over and under.
 ///
 /// # Returns
-/// As [`blocked_lofts`]; everything for an obstacle too near to an end of the line of sight.
+/// As [`blocked_lofts`](super::blocked_lofts); everything for an obstacle too near to an end of the line of sight.
 ///
 /// # Examples
 /// ```

@@ -56,7 +56,7 @@ impl Limb {
     /// assert!(limb.reaches(&Point3::new(0.0, 0.1, -0.3)) && !limb.reaches(&Point3::new(0.0, 0.1, -0.31)));
     /// assert_eq!(limb.bounds()[0].z, -0.3);
     /// // sqrt(0.1^2 + 0.3^2 + 2 0.1 0.3 cos(90 - 60)) from the root
-    /// assert!((limb.reach_m() - 0.389_829).abs() < 1e-6);
+    /// assert!((limb.reach_m() - 0.389_822).abs() < 1e-6);
     /// ```
     #[inline]
     pub fn reaches(&self, point: &Point3<f64>) -> bool {
