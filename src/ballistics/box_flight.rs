@@ -107,7 +107,7 @@ impl BoxFlight {
 }
 
 impl ContactTimes {
-    /// The first time of contact, s; `None` if there is none.
+    /// The first time of contact, s; `None` without a contact.
     pub fn first_s(&self) -> Option<f64> {
         let mut time_s = self.from_s;
         // A gap that holds the time moves it to the end of the gap, which may lie in another one.

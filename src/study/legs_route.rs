@@ -155,6 +155,7 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
     }
     warnings.extend(left_out(scenario, grown.end, facets));
     warnings.extend(assumptions(&ground));
+    warnings.extend(without_effect(question.scenario));
     let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends, progress)).transpose()?;
     let ends_m = [grown.ends.0, grown.ends.1].map(|node| grown.roadmap.contact(node).pose().root_m);
     let mut plan =
@@ -205,6 +206,18 @@ impl LegsRouted {
             nearest: self.answer.plan.gap.as_ref().map(|gap| gap.nearest_m.into()),
         })
     }
+}
+
+/// The keys of a scenario that a robot with legs does not obey.
+fn without_effect(scenario: &Scenario) -> Option<String> {
+    let limits = scenario.hopper.limits();
+    let keys = [
+        ("search.stand_off_m", scenario.mesh_search.stand_off_m.is_some()),
+        ("hopper.radius_m", limits.radius_m.is_some_and(|radius_m| radius_m > 0.0)),
+        ("hopper.landing", limits.landing.brakes()),
+    ];
+    let given: Vec<&str> = keys.iter().filter(|(_, is_given)| *is_given).map(|(key, _)| *key).collect();
+    (!given.is_empty()).then(|| format!("{}: without effect on the trunk and the feet of a robot with legs", given.join(", ")))
 }
 
 /// What a plan of a robot with legs assumes.

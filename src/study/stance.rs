@@ -16,7 +16,7 @@ use crate::{
     report::{StanceAnswer, TriedPoses, heading_of},
     scenario::Scenario,
     terrain::{Dem, MapBounds, MeshTree, TerrainError, mesh_of_dem, read_mesh_with},
-    world::{Hopper, HopperLimits, Robot},
+    world::{Hopper, HopperLimits, LandingMode, Robot},
 };
 
 use super::MeshHopError;
@@ -295,7 +295,16 @@ pub(super) fn with_robot(hopper: &Hopper, robot: &Robot) -> Hopper {
     let takeoff_speed_max_m_s = least(limits.takeoff_speed_max_m_s, robot.takeoff_speed_max_m_s());
     let landing_speed_max_m_s = least(limits.landing_speed_max_m_s, robot.landing_speed_max_m_s());
     let mass_kg = limits.mass_kg.or(robot.mass_kg());
-    Hopper::new(HopperLimits { takeoff_speed_max_m_s, landing_speed_max_m_s, mass_kg, ..limits }).unwrap_or(*hopper)
+    // The trunk has the size of the robot, and its feet take the landing: no ball is about its root, and no brakes slow it.
+    Hopper::new(HopperLimits {
+        takeoff_speed_max_m_s,
+        landing_speed_max_m_s,
+        mass_kg,
+        radius_m: None,
+        landing: LandingMode::Ballistic,
+        ..limits
+    })
+    .unwrap_or(*hopper)
 }
 
 /// The mesh under a place.

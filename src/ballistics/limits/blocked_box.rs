@@ -97,7 +97,7 @@ pub fn blocked_lofts_of_box(
 }
 
 /// The border of the places of the plane of travel at which a box of fixed orientation meets a triangle: a convex polygon, by its corners in
-/// order, as horizontal distance from the take-off and height over it, m. Empty if there are none. `border`: where they are written.
+/// order, as horizontal distance from the take-off and height over it, m. Empty if the box never meets it. `border`: where they are written.
 pub fn border_of_box<'a>(triangle: &[Vector3<f64>; 3], flown: &FlownBox, border: &'a mut BoxBorder) -> &'a [ChainPoint] {
     let mut points = [ChainPoint::new(0.0, 0.0); HULL_POINTS];
     let count = crossings(triangle, flown, |[x_m, z_m], count| points[count] = ChainPoint::new(x_m, z_m));

@@ -14,7 +14,7 @@ use crate::{quantity::SlopeInterval, world::PreparedCone};
 const DUAL_TOLERANCE: f64 = 1e-12;
 
 /// How far a product of unit vectors is off by rounding, a few times over: two cones whose edges are opposite to within this are those of a
-/// half-space. An angle of 1e-7 degrees more or less is told from it.
+/// half-space. An angle that differs by 1e-7 degrees is beyond it.
 const OPPOSITE_TOLERANCE: f64 = 1e-15;
 
 /// Sines below this make no half-space: the cones are as good as rays, and two opposite rays are a line.

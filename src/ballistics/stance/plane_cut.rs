@@ -73,7 +73,7 @@ impl PlaneCut {
         }
     }
 
-    /// The angle between the sides: 0 for a single ray, 180 degrees for a half-plane, 360 for every direction; `None` if there is none.
+    /// The angle between the sides: 0 for a single ray, 180 degrees for a half-plane, 360 for every direction; `None` if the plane misses the cone.
     pub fn opening(&self) -> Option<Angle> {
         match *self {
             Self::Nothing => None,

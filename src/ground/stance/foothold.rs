@@ -169,7 +169,7 @@ impl StanceGround {
         Err(outcome)
     }
 
-    /// The parts of facets that a foot reaches, put together by their normals in the trunk frame, and why there are none if there are none.
+    /// The parts of facets that a foot reaches, put together by their normals in the trunk frame, and the reason if the list is empty.
     fn groups(&self, pose: &Pose, limb: &Limb, clipper: &mut Clipper) -> (Vec<Group>, LimbOutcome) {
         let [low, high] = around(pose, limb.bounds());
         let mut groups: Vec<Group> = Vec::new();

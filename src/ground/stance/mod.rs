@@ -118,7 +118,7 @@ impl StanceGround {
         [(-trunk).min(-limbs), -limbs]
     }
 
-    /// The highest ground straight under a point, m; `None` where there is none.
+    /// The highest ground straight under a point, m; `None` over a gap or beside the mesh.
     pub fn ground_below_m(&self, point: Point3<f64>) -> Option<f64> {
         let near_m = self.mesh.tree().resolution_m();
         let mut highest: Option<f64> = None;
