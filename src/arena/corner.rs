@@ -49,9 +49,12 @@ fn beside([x, y]: [f64; 2]) -> (usize, usize) {
 }
 
 impl Corner {
-    /// Whether any two cells about it differ.
+    /// Whether a path may bend here: not on level ground, and not at a straight face, where cutting the bend crosses what the bend crosses.
     pub(super) fn has_bend(&self) -> bool {
-        self.quadrants.iter().any(|level| *level != self.quadrants[0])
+        let [first, second, third, fourth] = self.quadrants;
+        let is_straight_across = first == second && third == fourth;
+        let is_straight_up = first == fourth && second == third;
+        !is_straight_across && !is_straight_up
     }
 
     /// The height just beyond the corner in a direction, m.

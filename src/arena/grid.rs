@@ -298,6 +298,7 @@ impl<'a> Grid<'a> {
         let jumper = *self.arena.jumper();
         let rest = self.rest();
         let turns_s = self.turns_s();
+        let turns_to_s: [[f64; STATES]; 8] = std::array::from_fn(|to| turns_s.map(|from| from[to]));
         let mut labels = Labels::new(self.heights.len() * STATES, jumper.is_plain());
         let state = |node: usize, heading: usize| u32::try_from(node * STATES + heading).unwrap_or(u32::MAX);
         labels.offer(
@@ -308,6 +309,9 @@ impl<'a> Grid<'a> {
             let (node, heading) = (label.state as usize / STATES, label.state as usize % STATES);
             if node == self.goal {
                 return Some(self.path(&labels.states_to(number), label.time_s));
+            }
+            if heading < 8 && labels.is_later_than_a_turn(&label, heading, &turns_to_s[heading]) {
+                continue;
             }
             let place = self.place(node);
             let moves = self.moves_of(node);
@@ -330,7 +334,9 @@ impl<'a> Grid<'a> {
                     let time_s = label.time_s + move_s;
                     let next_label =
                         Label { state: state(next, next_heading), parent: number, time_s, energy_j, jumps: label.jumps + jump };
-                    labels.offer(next_label, rest(self.place(next)));
+                    if !labels.is_later_than_a_turn(&next_label, next_heading, &turns_to_s[next_heading]) {
+                        labels.offer(next_label, rest(self.place(next)));
+                    }
                 }
             }
         }

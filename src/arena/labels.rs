@@ -75,6 +75,18 @@ impl Labels {
         self.waiting.push(Waiting { bound_s: label.time_s + rest_s, label: number });
     }
 
+    /// Whether another state of a node is reached so early that a turn from it makes this label no sooner: what follows a label follows that turn
+    /// too. `turns_s` has the time of the turn from each state of the node. Only where time alone decides.
+    pub(super) fn is_later_than_a_turn<const N: usize>(&self, label: &Label, own: usize, turns_s: &[f64; N]) -> bool {
+        let first = label.state as usize - own;
+        self.is_plain
+            && self.best_s[first..first + N]
+                .iter()
+                .zip(turns_s)
+                .enumerate()
+                .any(|(state, (best_s, turn_s))| state != own && best_s + turn_s <= label.time_s)
+    }
+
     /// Settles the next label; `None` when all are settled.
     pub(super) fn settle(&mut self) -> Option<(u32, Label)> {
         while let Some(Waiting { label: number, .. }) = self.waiting.pop() {

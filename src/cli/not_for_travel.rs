@@ -26,7 +26,5 @@ pub(crate) fn refuse_of_map(args: &MapArgs) -> Result<(), Failure> {
         ("--paths", args.paths.is_some(), OF_GOALS),
         ("--geojson", args.geojson.is_some(), OF_GOALS),
         ("--profiles", args.profiles.is_some(), OF_GOALS),
-        ("--dry-run", args.size.dry_run, "states the size of a search for hops"),
-        ("--memory-max-mib", args.size.memory_max_mib.is_some(), "limits the memory of a search for hops"),
     ])
 }

@@ -306,7 +306,8 @@ impl<'g, G: LegGraph> Run<'g, G> {
     /// Whether a path to the goal found since a label was made takes no more of anything than every path that goes on from it.
     fn is_beaten(&self, node: usize, label: u32, whole: &mut Vec<f64>) -> bool {
         let tracked = &self.labels.tracked;
-        !tracked.with_rest(self.labels.totals(label), &self.graph.least_to_goal(node), whole) || self.labels.node_dominates(self.goal, whole)
+        !tracked.with_rest(self.labels.totals(label), &self.graph.least_to_goal(node), whole)
+            || self.labels.node_dominates(self.goal, whole)
     }
 
     /// The labels of the goal.

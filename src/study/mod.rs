@@ -129,7 +129,7 @@ pub use trade::{CellError, Trade, TradeError, TradedCells, Varied, verdict};
 pub use traded::{Traded, trade};
 pub use trajectory::TrajectoryError;
 pub use travel::{
-    DriveDefect, ReachedBy, TravelMap, TravelOptions, TravelPlanned, TravelSimulated, travel_map, travel_plan, travel_simulate,
-    travel_size,
+    DriveDefect, ReachedBy, TravelMap, TravelMapOptions, TravelOptions, TravelPlanned, TravelSimulated, travel_map,
+    travel_map_size, travel_plan, travel_simulate, travel_size,
 };
 pub use variation::Variation;

@@ -125,14 +125,46 @@ fn the_memory_of_a_mission_is_stated_and_limited() {
     assert_eq!(free.status, 0, "{}", free.stderr);
     let within = sized(&["--memory-max-mib", "3"]);
     assert!(bytes(&within.stdout) <= 3 << 20 && bytes(&free.stdout) > 3 << 20, "{} {}", within.stdout, free.stdout);
-    let refused = desk.run(&["plan", "step.toml", "--quiet", "--memory-max-mib", "0"]);
-    assert_eq!(refused.status, 2, "{}", refused.stdout);
     // What fits into less has the same answer.
     let times = [&["--memory-max-mib", "3"][..], &[]].map(|more| {
         let ran = desk.run(&[&["plan", "step.toml", "--quiet", "--format", "json"], more].concat());
         serde_json::from_str::<Value>(&ran.stdout).unwrap()["totals"]["mission_time_s"].as_f64().unwrap()
     });
     assert!((times[0] - times[1]).abs() < 1e-9, "{times:?}");
+    // A map keeps the totals of every node for each means, and one more for the way back.
+    let of_map = |more: &[&str]| {
+        let ran = desk.run(&[&["map", "step.toml", "--quiet", "--format", "json", "--dry-run"], more].concat());
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        ran.stdout
+    };
+    assert!(
+        of_map(&["--return"]).contains("totals of all nodes, 4 times") && bytes(&of_map(&["--memory-max-mib", "3"])) <= 3 << 20
+    );
+    let hops = [&["--memory-max-mib", "3"][..], &[]].map(|more| {
+        let ran = desk.run(&[&["map", "step.toml", "--quiet", "--format", "json"], more].concat());
+        serde_json::from_str::<Value>(&ran.stdout).unwrap()["reached"].clone()
+    });
+    assert_eq!(hops[0], hops[1]);
+    for command in ["plan", "map"] {
+        let (status, _, stderr) = chta(root(), &[command, SHIPPED, "--quiet", "--memory-max-mib", "1"]);
+        assert!(status == 2 && stderr.contains("expected at most 1 MiB"), "{command}: {stderr}");
+    }
+}
+
+/// Row by row more hops take less time, and the last row is the plan.
+#[test]
+fn a_front_of_missions_ends_with_the_plan() {
+    let (status, answer) = json(&["plan", SHIPPED, "--front", "hops,mission-time"]);
+    assert_eq!(status, 0);
+    let rows: Vec<(u64, f64)> = answer["front"]["paths"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|row| (row["hops"].as_u64().unwrap(), row["mission_time_s"].as_f64().unwrap()))
+        .collect();
+    assert!(rows.len() > 5 && rows.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 > pair[1].1), "{rows:?}");
+    let plan = answer["totals"]["mission_time_s"].as_f64().unwrap();
+    assert!((rows[rows.len() - 1].1 - plan).abs() < 1e-9 * plan, "{rows:?} {plan}");
 }
 
 #[test]

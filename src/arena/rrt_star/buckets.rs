@@ -2,12 +2,20 @@
 
 use crate::quantity::MapPoint;
 
-/// The numbers of nodes by bucket.
+/// The nodes by bucket, with their places, so that a search among them reads one piece of memory after the other.
 pub(super) struct Buckets {
     side_m: f64,
     columns: i64,
     rows: i64,
-    nodes: Vec<Vec<u32>>,
+    nodes: Vec<Vec<(u32, MapPoint)>>,
+}
+
+/// A node near a place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    pub(super) node: u32,
+    /// The square of its distance, m2.
+    pub(super) distance_m2: f64,
 }
 
 /// The most buckets along a side: beyond it they grow.
@@ -28,7 +36,7 @@ impl Buckets {
         ((at_m / self.side_m).floor() as i64).clamp(0, count - 1)
     }
 
-    fn bucket(&self, column: i64, row: i64) -> &[u32] {
+    fn bucket(&self, column: i64, row: i64) -> &[(u32, MapPoint)] {
         usize::try_from(row * self.columns + column).ok().and_then(|cell| self.nodes.get(cell)).map_or(&[], Vec::as_slice)
     }
 
@@ -36,12 +44,12 @@ impl Buckets {
     pub(super) fn add(&mut self, node: u32, point: MapPoint) {
         let cell = self.cell(point.y, self.rows) * self.columns + self.cell(point.x, self.columns);
         if let Some(bucket) = usize::try_from(cell).ok().and_then(|cell| self.nodes.get_mut(cell)) {
-            bucket.push(node);
+            bucket.push((node, point));
         }
     }
 
     /// The node nearest to a point; the first node if there is no other.
-    pub(super) fn nearest(&self, point: MapPoint, place: impl Fn(u32) -> MapPoint) -> u32 {
+    pub(super) fn nearest(&self, point: MapPoint) -> u32 {
         let (column, row) = (self.cell(point.x, self.columns), self.cell(point.y, self.rows));
         let (mut best, mut best_m2) = (0, f64::INFINITY);
         for ring in 0..=self.columns.max(self.rows) {
@@ -56,8 +64,8 @@ impl Buckets {
                 let mut i = column - ring;
                 while i <= column + ring {
                     if (0..self.columns).contains(&i) {
-                        for node in self.bucket(i, j) {
-                            let distance_m2 = (place(*node) - point).norm_squared();
+                        for (node, place) in self.bucket(i, j) {
+                            let distance_m2 = (place - point).norm_squared();
                             if distance_m2 < best_m2 {
                                 (best, best_m2) = (*node, distance_m2);
                             }
@@ -70,14 +78,15 @@ impl Buckets {
         best
     }
 
-    /// The nodes within a distance of a point, in the order of the buckets.
-    pub(super) fn within(&self, point: MapPoint, radius_m: f64, place: impl Fn(u32) -> MapPoint, found: &mut Vec<u32>) {
+    /// The nodes within a distance of a point with the squares of their distances, in the order of the buckets.
+    pub(super) fn within(&self, point: MapPoint, radius_m: f64, found: &mut Vec<Near>) {
         found.clear();
         let columns = self.cell(point.x - radius_m, self.columns)..=self.cell(point.x + radius_m, self.columns);
         for row in self.cell(point.y - radius_m, self.rows)..=self.cell(point.y + radius_m, self.rows) {
             for column in columns.clone() {
-                let near = |node: &&u32| (place(**node) - point).norm_squared() <= radius_m * radius_m;
-                found.extend(self.bucket(column, row).iter().filter(near));
+                let near = |(node, place): &(u32, MapPoint)| Near { node: *node, distance_m2: (place - point).norm_squared() };
+                let is_within = |near: &Near| near.distance_m2 <= radius_m * radius_m;
+                found.extend(self.bucket(column, row).iter().map(near).filter(is_within));
             }
         }
     }

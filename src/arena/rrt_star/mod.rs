@@ -88,7 +88,7 @@ pub fn grow_rrt_star(arena: &Arena, options: &RrtStarOptions, may_jump: bool) ->
             break;
         }
         let Some(sample) = sampler.next(tree.best_s()) else { continue };
-        let nearest = buckets.nearest(sample, |node| tree.point(node));
+        let nearest = buckets.nearest(sample);
         let from = tree.point(nearest);
         let distance_m = (sample - from).norm();
         if distance_m <= 1e-9 {
@@ -97,7 +97,7 @@ pub fn grow_rrt_star(arena: &Arena, options: &RrtStarOptions, may_jump: bool) ->
         let point = from + (sample - from) * (options.step_m / distance_m).min(1.0);
         let Some(z_m) = space.height_m(point) else { continue };
         let radius_m = sampler.radius_m(tree.len(), tree.best_s());
-        buckets.within(point, radius_m.max((point - from).norm() + 1e-9), |node| tree.point(node), &mut near);
+        buckets.within(point, radius_m.max((point - from).norm() + 1e-9), &mut near);
         let Some(node) = tree.add((point, z_m), nearest, &near) else { continue };
         buckets.add(node, point);
         tree.rewire(node, &near);

@@ -1,10 +1,14 @@
 //! The tree: nodes with their parents and times.
 
+use std::collections::BinaryHeap;
+
 use super::{
     super::{
         Arena, ArenaPath, Move, PathPoint, Tariff,
+        labels::Waiting,
         path::{flown, turn_rad},
     },
+    buckets::Near,
     space::Space,
 };
 use crate::quantity::MapPoint;
@@ -58,6 +62,10 @@ pub(super) struct Tree<'a> {
     tariff: Tariff,
     nodes: Vec<TreeNode>,
     children: Vec<Vec<u32>>,
+    /// What a metre takes at least, s: below the true time, so that rounding does not let the bound pass it.
+    least_s_per_m: f64,
+    /// Space for the parents that wait to be looked at.
+    waiting: Vec<Waiting>,
     goal: Option<u32>,
     /// The time of the best path so far, s, and its points.
     best: Option<(f64, Vec<PathPoint>)>,
@@ -79,7 +87,10 @@ impl<'a> Tree<'a> {
             energy_j: 0.0,
             direction: arena.heading(),
         };
-        Self { arena, space, tariff, nodes: vec![start], children: vec![Vec::new()], goal: None, best: None }
+        let fastest_m_s = tariff.flight.map_or(0.0, |flight| flight.along_m_s()).max(tariff.speed_m_s);
+        let least_s_per_m = (1.0 - 1e-12) / fastest_m_s;
+        let children = vec![Vec::new()];
+        Self { arena, space, tariff, nodes: vec![start], children, least_s_per_m, waiting: Vec::new(), goal: None, best: None }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -126,17 +137,30 @@ impl<'a> Tree<'a> {
     }
 
     /// The best of these parents of a place, the nearest node among them.
-    fn best_parent(&self, place: (MapPoint, f64), near: &[u32]) -> Option<(u32, Reached)> {
-        let candidates = near.iter().filter(|node| self.goal != Some(**node));
-        let mut candidates: Vec<(u32, Reached)> = candidates
-            .map(|node| (*node, self.priced(*node, place, Self::kind(self.nodes[*node as usize].z_m, place.1))))
-            .filter(|(_, reached)| reached.energy_j <= self.arena.jumper().battery_j)
-            .collect();
-        candidates.sort_unstable_by(|(a, x), (b, y)| x.time_s.total_cmp(&y.time_s).then(a.cmp(b)));
-        candidates.into_iter().find(|(node, _)| {
-            let from = &self.nodes[*node as usize];
-            self.space.joined((from.point, from.z_m), place).is_some()
-        })
+    fn best_parent(&mut self, place: (MapPoint, f64), near: &[Near]) -> Option<(u32, Reached)> {
+        let mut waiting = std::mem::take(&mut self.waiting);
+        waiting.clear();
+        // By what each takes at least: the first that is joined is seldom followed by a better one, and few are looked at.
+        waiting.extend(near.iter().filter(|near| self.goal != Some(near.node)).map(|near| Waiting {
+            bound_s: self.nodes[near.node as usize].time_s + near.distance_m2.sqrt() * self.least_s_per_m,
+            label: near.node,
+        }));
+        let mut waiting = BinaryHeap::from(waiting);
+        let mut best: Option<(u32, Reached)> = None;
+        while let Some(Waiting { bound_s, label: node }) = waiting.pop() {
+            if best.as_ref().is_some_and(|(_, best)| best.time_s <= bound_s) {
+                break;
+            }
+            let from = &self.nodes[node as usize];
+            let reached = self.priced(node, place, Self::kind(from.z_m, place.1));
+            let is_better = reached.energy_j <= self.arena.jumper().battery_j
+                && best.as_ref().is_none_or(|(other, best)| (reached.time_s, node) < (best.time_s, *other));
+            if is_better && self.space.joined((from.point, from.z_m), place).is_some() {
+                best = Some((node, reached));
+            }
+        }
+        self.waiting = waiting.into_vec();
+        best
     }
 
     fn push(&mut self, (point, z_m): (MapPoint, f64), parent: u32, joined: Joined, reached: &Reached) -> u32 {
@@ -149,7 +173,7 @@ impl<'a> Tree<'a> {
     }
 
     /// Adds a place over the best of its neighbours; `None` if none is joined to it.
-    pub(super) fn add(&mut self, place: (MapPoint, f64), nearest: u32, near: &[u32]) -> Option<u32> {
+    pub(super) fn add(&mut self, place: (MapPoint, f64), nearest: u32, near: &[Near]) -> Option<u32> {
         let (parent, reached) = self.best_parent(place, near)?;
         let joined = if parent == nearest { Joined::Nearest } else { Joined::Sooner };
         Some(self.push(place, parent, joined, &reached))
@@ -157,9 +181,14 @@ impl<'a> Tree<'a> {
 
     /// Rewires neighbours over a new node, where that makes them sooner and takes no more jumps and energy, so that what follows them is not
     /// worse but for its turning.
-    pub(super) fn rewire(&mut self, node: u32, near: &[u32]) {
+    pub(super) fn rewire(&mut self, node: u32, near: &[Near]) {
         let own = self.nodes[node as usize];
-        for other in near.iter().copied().filter(|other| *other != own.parent && *other != 0) {
+        for Near { node: other, distance_m2 } in near.iter().copied().filter(|other| other.node != own.parent && other.node != 0) {
+            // Those that are sooner anyhow are most.
+            let least_s = own.time_s + distance_m2.sqrt() * self.least_s_per_m;
+            if least_s >= self.nodes[other as usize].time_s {
+                continue;
+            }
             let target = self.nodes[other as usize];
             let place = (target.point, target.z_m);
             let reached = self.priced(node, place, Self::kind(own.z_m, target.z_m));
@@ -196,14 +225,15 @@ impl<'a> Tree<'a> {
     /// Joins the goal to a node nearby: as a node of its own at first, then over a better parent. Returns its number if it is new.
     pub(super) fn try_goal(&mut self, node: u32, radius_m: f64) -> Option<u32> {
         let goal = (self.arena.goal(), self.space.height_m(self.arena.goal())?);
-        if (self.point(node) - goal.0).norm() > radius_m {
+        let distance_m2 = (self.point(node) - goal.0).norm_squared();
+        if distance_m2.sqrt() > radius_m {
             return None;
         }
         if let Some(known) = self.goal {
-            self.rewire(node, &[known]);
+            self.rewire(node, &[Near { node: known, distance_m2 }]);
             return None;
         }
-        let (parent, reached) = self.best_parent(goal, &[node])?;
+        let (parent, reached) = self.best_parent(goal, &[Near { node, distance_m2 }])?;
         let number = self.push(goal, parent, Joined::Nearest, &reached);
         self.goal = Some(number);
         Some(number)

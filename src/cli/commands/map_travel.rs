@@ -2,7 +2,11 @@
 
 use chta::{
     report::{Document, DocumentKind},
-    study::{map::PreparedMap, travel_map},
+    study::{
+        TravelMapOptions,
+        map::{MapQuestion, PreparedMap},
+        travel_map, travel_map_size,
+    },
 };
 
 use crate::cli::{
@@ -19,10 +23,19 @@ use crate::cli::{
 pub(super) fn run(args: &MapArgs, input: &MapInput) -> Result<Answer, Failure> {
     not_for_travel::refuse_of_map(args)?;
     let quiet = args.common.quiet;
-    let prepared = PreparedMap::new(&input.question(args)).map_err(|error| input.failure(&error))?;
+    let options = TravelMapOptions { returns: args.back, memory_max_bytes: args.size.memory_max_bytes() };
+    // The memory of a map of hops is another.
+    let question = MapQuestion { memory_max_bytes: None, ..input.question(args) };
+    let prepared = PreparedMap::new(&question).map_err(|error| input.failure(&error))?;
+    if args.size.dry_run {
+        let size = travel_map_size(&prepared, &input.bare.scenario, options).map_err(|error| input.failure(&error))?;
+        let (files, warnings) = (raster_files_of(&input.bare)?, input.warned(&prepared.warnings, quiet));
+        let document = Document::new(DocumentKind::Size, input.bare.document.clone(), files, warnings, size);
+        return output::sized(&document, args.answer.format);
+    }
     let outputs = TravelMapOutputs::begin(args)?;
     let scenario = &input.bare.scenario;
-    let found = travel_map(&prepared, scenario, args.back, &Progress::new(quiet)).map_err(|error| input.failure(&error))?;
+    let found = travel_map(&prepared, scenario, options, &Progress::new(quiet)).map_err(|error| input.failure(&error))?;
     let warnings = input.warned(&[&prepared.warnings[..], &found.warnings].concat(), quiet);
     outputs.write(args, input, &prepared, &found)?;
     let text = match args.answer.format {

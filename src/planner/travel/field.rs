@@ -42,6 +42,16 @@ pub struct TravelField {
 }
 
 impl TravelField {
+    /// The amounts of the field of an objective: its own, then mission time, hops, energy and distance as far as there is room.
+    pub fn objective(objective: &Objective) -> Objective {
+        let more = [Amount::MissionTime, Amount::Hops, Amount::Energy, Amount::Distance];
+        let more = more.into_iter().filter(|amount| !objective.amounts().contains(amount));
+        // An amount that does not add up stays last, and alone.
+        let room = if objective.amounts().iter().all(|amount| amount.adds_up()) { Objective::MOST } else { 0 };
+        let all = objective.amounts().iter().copied().chain(more).take(room.max(objective.amounts().len())).collect();
+        Objective::new(all).unwrap_or_else(|_| objective.clone())
+    }
+
     /// The amounts whose totals are known.
     pub fn amounts(&self) -> &[Amount] {
         &self.amounts
@@ -57,16 +67,6 @@ impl TravelField {
     pub fn is_reached(&self, node: SurfaceNode) -> bool {
         self.total(node, self.amounts[0]).is_some()
     }
-}
-
-/// The amounts of a field of an objective: its own, then mission time, hops, energy and distance as far as there is room.
-fn amounts_of(objective: &Objective) -> Objective {
-    let more = [Amount::MissionTime, Amount::Hops, Amount::Energy, Amount::Distance];
-    let more = more.into_iter().filter(|amount| !objective.amounts().contains(amount));
-    // An amount that does not add up stays last, and alone.
-    let room = if objective.amounts().iter().all(|amount| amount.adds_up()) { Objective::MOST } else { 0 };
-    let all = objective.amounts().iter().copied().chain(more).take(room.max(objective.amounts().len())).collect();
-    Objective::new(all).unwrap_or_else(|_| objective.clone())
 }
 
 /// Finds the best missions between some starts and all nodes by an objective, within budgets. `takeoff`: the choice of take-off angle of hops
@@ -90,7 +90,7 @@ pub fn travel_field(
     let meter = Meter::new(progress, Stage::Search);
     let starts: Vec<(SurfaceNode, MapPosition)> =
         starts.iter().filter_map(|node| Some((*node, nodes.position(ground, *node)?))).collect();
-    let objective = amounts_of(question.route.objective);
+    let objective = TravelField::objective(question.route.objective);
     let amounts = objective.amounts().to_vec();
     let mut field = TravelField { totals: vec![f64::NAN; nodes.count() * amounts.len()], amounts, capped: false };
     let Some(first) = starts.first() else { return Ok(field) };

@@ -5,7 +5,7 @@ use super::super::{
     free_route::left_out,
     map::{MapStudyError, PreparedMap},
 };
-use super::plan::of_wheels;
+use super::{plan::of_wheels, size::TravelMemory};
 use crate::{
     ground::NodeLattice,
     planner::{
@@ -14,7 +14,7 @@ use crate::{
     },
     progress::Progress,
     reach::map::Post,
-    report::{DeratingRecord, TravelGoalRecord, TravelMapAnswer, TravelReachRecord, TravelSumsRecord},
+    report::{DeratingRecord, SizeAnswer, TravelGoalRecord, TravelMapAnswer, TravelReachRecord, TravelSumsRecord},
     scenario::{DriveKeys, Scenario},
     terrain::Dem,
 };
@@ -47,42 +47,90 @@ pub enum ReachedBy {
     Together,
 }
 
+/// What is asked of a map of missions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TravelMapOptions {
+    /// Also from where the machine gets back to a start.
+    pub returns: bool,
+    /// The most memory that all maps and their searches may take, bytes; `None`: as much as they need.
+    pub memory_max_bytes: Option<u64>,
+}
+
+/// The means by which a map is made, that of the machine first.
+const fn means(keys: &DriveKeys) -> &[Travel] {
+    match keys.travel {
+        Travel::Both => &[Travel::Both, Travel::Drive, Travel::Hop],
+        Travel::Drive => &[Travel::Drive],
+        Travel::Hop => &[Travel::Hop],
+    }
+}
+
+fn nodes_of(prepared: &PreparedMap) -> Result<SurfaceNodes, MapStudyError> {
+    let lattice = SurfaceLattice::new(prepared.planning.terrain().dem(), NodesPerPost::of(prepared.lattice.per_post));
+    Ok(SurfaceNodes::new(&prepared.planning, lattice, [])?)
+}
+
+/// What the maps take at most, the labels that each search may keep, and the bytes that it may hold to be faster.
+fn memory(
+    prepared: &PreparedMap,
+    nodes: &SurfaceNodes,
+    scenario: &Scenario,
+    options: TravelMapOptions,
+) -> Result<(TravelMemory, LabelCap, u64), MapStudyError> {
+    let keys = scenario.drives().ok_or(CaseError::DriveOnly)?;
+    let fields = means(keys).len() + usize::from(options.returns);
+    let asked = (&scenario.full_objective(), &scenario.total_budgets());
+    let memory = TravelMemory::of_maps((&prepared.planning, nodes), keys, asked, fields);
+    let (cap, kept_bytes) = memory.within(options.memory_max_bytes).map_err(|needed_bytes| {
+        let count = |count: u64| usize::try_from(count).unwrap_or(usize::MAX);
+        let allowed_bytes = options.memory_max_bytes.unwrap_or(u64::MAX);
+        MapStudyError::TooMuchMemory { needed_bytes, allowed_bytes, posts: count(memory.posts), nodes: count(memory.nodes) }
+    })?;
+    Ok((memory, cap, kept_bytes))
+}
+
+/// What the maps of a scenario with `[drive]` take at most, without the searches.
+///
+/// # Errors
+/// [`MapStudyError`], as of [`travel_map`].
+pub fn travel_map_size(
+    prepared: &PreparedMap,
+    scenario: &Scenario,
+    options: TravelMapOptions,
+) -> Result<SizeAnswer, MapStudyError> {
+    let (memory, cap, kept_bytes) = memory(prepared, &nodes_of(prepared)?, scenario, options)?;
+    Ok(memory.answer(cap, kept_bytes))
+}
+
 /// Finds where the machine of a scenario with `[drive]` gets from the starts of a map, by driving, by hops and by both.
 ///
 /// # Arguments
-/// `prepared`: the terrain, its nodes, and starts and goals. `returns`: also from where it gets back.
+/// `prepared`: the terrain, its nodes, and starts and goals.
 ///
 /// # Errors
 /// [`MapStudyError`].
 pub fn travel_map(
     prepared: &PreparedMap,
     scenario: &Scenario,
-    returns: bool,
+    options: TravelMapOptions,
     progress: &dyn Progress,
 ) -> Result<TravelMap, MapStudyError> {
     let keys = scenario.drives().ok_or(CaseError::DriveOnly)?;
     let ground = &prepared.planning;
-    let n = NodesPerPost::of(prepared.lattice.per_post);
-    let nodes = SurfaceNodes::new(ground, SurfaceLattice::new(ground.terrain().dem(), n), [])?;
+    let nodes = nodes_of(prepared)?;
+    let (_, cap, kept_bytes_max) = memory(prepared, &nodes, scenario, options)?;
     let node = |post: Post| nodes.lattice_node((post.col, post.row));
     let starts: Vec<SurfaceNode> = prepared.starts.iter().map(|start| node(start.post)).collect();
     let objective = scenario.full_objective();
     let budgets = scenario.total_budgets();
     let field = |means: Travel, toward: Toward| {
-        let route = RouteQuestion {
-            objective: &objective,
-            budgets: &budgets,
-            commands: scenario.commands,
-            errors: None,
-            cap: LabelCap::default(),
-        };
-        let question = MissionQuestion { route, rover: &keys.rover, travel: means, kept_bytes_max: MissionQuestion::KEPT_BYTES };
+        let route = RouteQuestion { objective: &objective, budgets: &budgets, commands: scenario.commands, errors: None, cap };
+        let question = MissionQuestion { route, rover: &keys.rover, travel: means, kept_bytes_max };
         travel_field((ground, &nodes), &starts, (&question, scenario.search.takeoff, toward), progress)
     };
-    let means: &[Travel] = if keys.travel == Travel::Both { &[Travel::Both, Travel::Drive, Travel::Hop] } else { &[keys.travel] };
     let fields =
-        means.iter().map(|means| Ok((*means, field(*means, Toward::Nodes)?))).collect::<Result<Vec<_>, MapStudyError>>()?;
-    let back = returns.then(|| field(keys.travel, Toward::Start)).transpose()?;
+        means(keys).iter().map(|means| Ok((*means, field(*means, Toward::Nodes)?))).collect::<Result<Vec<_>, MapStudyError>>()?;
+    let back = options.returns.then(|| field(keys.travel, Toward::Start)).transpose()?;
     let mut map = TravelMap {
         answer: answer(prepared, (scenario, keys), &objective),
         warnings: warnings(scenario, prepared.dem(), &objective),

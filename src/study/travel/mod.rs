@@ -10,7 +10,7 @@ mod size;
 mod trials;
 mod walk;
 
-pub use map::{ReachedBy, TravelMap, travel_map};
+pub use map::{ReachedBy, TravelMap, TravelMapOptions, travel_map, travel_map_size};
 pub use plan::{TravelOptions, TravelPlanned, travel_plan};
 pub use size::travel_size;
 pub use trials::{TravelSimulated, travel_simulate};

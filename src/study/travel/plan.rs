@@ -60,7 +60,8 @@ pub struct TravelPlanned {
 pub fn travel_plan(case: &Case, options: TravelOptions, progress: &dyn Progress) -> Result<TravelPlanned, JourneyError> {
     let search = TravelSearch::of(case)?;
     let mission = search.best(progress)?;
-    let walked = mission.path.as_ref().map(|path| stretches(&search, path, case.scenario.commands)).transpose()?.unwrap_or_default();
+    let walked =
+        mission.path.as_ref().map(|path| stretches(&search, path, case.scenario.commands)).transpose()?.unwrap_or_default();
     let mut answer = answer(&search, &mission, &walked)?;
     if options.alternatives {
         answer.alternatives = Some(alternatives(&search, &mission, progress)?);

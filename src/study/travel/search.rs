@@ -1,6 +1,8 @@
 //! The search for a mission of a case.
 
-use super::super::{Case, CaseError, JourneyError, dem_ground::dem_ground, free_route::FreeSearch, front::front_commands};
+use super::super::{
+    Case, CaseError, FreeRouteError, JourneyError, dem_ground::dem_ground, free_route::FreeSearch, front::front_commands,
+};
 use super::size::TravelMemory;
 use crate::{
     ground::DemGround,
@@ -31,8 +33,11 @@ impl TravelSearch {
     pub(super) fn of(case: &Case) -> Result<Self, JourneyError> {
         let keys = case.scenario.drive.clone().ok_or(CaseError::DriveOnly)?;
         let mut free = FreeSearch::of(case)?;
-        let memory = TravelMemory::of(&free, &keys);
-        let (cap, kept_bytes_max) = memory.within(case.memory_max_bytes)?;
+        let memory = TravelMemory::of((&free.ground, &free.nodes), &keys, (&free.objective, &free.budgets));
+        let (cap, kept_bytes_max) = memory.within(case.memory_max_bytes).map_err(|needed_bytes| {
+            let allowed_bytes = case.memory_max_bytes.unwrap_or(u64::MAX);
+            FreeRouteError::TooMuchMemory { needed_bytes, allowed_bytes, nodes: memory.nodes }
+        })?;
         free.cap = cap;
         let whole = dem_ground(&free.case).map_err(Box::new)?;
         Ok(Self { free, keys, whole, memory, kept_bytes_max })

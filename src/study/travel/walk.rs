@@ -40,7 +40,11 @@ pub struct DriveDefect(pub String);
 ///
 /// # Errors
 /// [`JourneyError`]; a [`Defect`] or a [`DriveDefect`] where a leg does not pass the checker.
-pub(super) fn stretches(search: &TravelSearch, path: &MissionPath, commands: SearchedCommands) -> Result<Vec<Stretch>, JourneyError> {
+pub(super) fn stretches(
+    search: &TravelSearch,
+    path: &MissionPath,
+    commands: SearchedCommands,
+) -> Result<Vec<Stretch>, JourneyError> {
     let mut stretches = Vec::new();
     let is_drive = |at: &MissionMove| matches!(at, MissionMove::Drive);
     let mut first = 0;
@@ -49,7 +53,11 @@ pub(super) fn stretches(search: &TravelSearch, path: &MissionPath, commands: Sea
         let count = path.moves[first..].iter().take_while(|next| is_drive(next) == kind).count();
         let places = &path.places[first..=first + count];
         let moves = &path.moves[first..first + count];
-        stretches.push(if kind { Stretch::Drive(driven(search, places)?) } else { Stretch::Hops(flown(search, (places, moves), commands)?) });
+        stretches.push(if kind {
+            Stretch::Drive(driven(search, places)?)
+        } else {
+            Stretch::Hops(flown(search, (places, moves), commands)?)
+        });
         first += count;
     }
     Ok(stretches)
