@@ -115,6 +115,9 @@ fn of_map_study(error: &MapStudyError) -> Option<String> {
              --stride",
             first.x, first.y, second.x, second.y, post.x, post.y
         )),
+        MapStudyError::MissionsTooLarge { needed_bytes, .. } => {
+            Some(format!("--memory-max-mib: {error}; the option for that: --memory-max-mib {}", needed_bytes.div_ceil(1 << 20)))
+        }
         MapStudyError::TooMuchMemory { needed_bytes, .. } => Some(format!(
             "--memory-max-mib: {error}; the options for that: --stride N, fewer of --effort, --return, --mobility and \
              --predecessor-output, or --memory-max-mib {}",

@@ -81,6 +81,19 @@ pub enum MapStudyError {
         /// Nodes of the map.
         nodes: usize,
     },
+    /// Maps of missions that take more memory than allowed.
+    #[error(
+        "the maps of missions need at least {} MiB ({nodes} nodes), expected at most {} MiB: take a part of the DEM (gdal_translate -projwin) or a \
+         coarser one (gdalwarp -tr), or allow more", needed_bytes.div_ceil(1 << 20), allowed_bytes >> 20
+    )]
+    MissionsTooLarge {
+        /// The bytes needed at least.
+        needed_bytes: u64,
+        /// The bytes allowed.
+        allowed_bytes: u64,
+        /// Nodes of the maps.
+        nodes: u64,
+    },
     /// More nodes than can be numbered.
     #[error(transparent)]
     Nodes(#[from] TooManyNodes),

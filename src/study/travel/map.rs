@@ -82,9 +82,8 @@ fn memory(
     let asked = (&scenario.full_objective(), &scenario.total_budgets());
     let memory = TravelMemory::of_maps((&prepared.planning, nodes), keys, asked, fields);
     let (cap, kept_bytes) = memory.within(options.memory_max_bytes).map_err(|needed_bytes| {
-        let count = |count: u64| usize::try_from(count).unwrap_or(usize::MAX);
         let allowed_bytes = options.memory_max_bytes.unwrap_or(u64::MAX);
-        MapStudyError::TooMuchMemory { needed_bytes, allowed_bytes, posts: count(memory.posts), nodes: count(memory.nodes) }
+        MapStudyError::MissionsTooLarge { needed_bytes, allowed_bytes, nodes: memory.nodes }
     })?;
     Ok((memory, cap, kept_bytes))
 }

@@ -17,7 +17,7 @@ const KEPT_PART: u64 = 4;
 /// Not counted: the program itself, the file while it is read, slices, trials, and pictures.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TravelMemory {
-    pub(super) posts: u64,
+    posts: u64,
     pub(super) nodes: u64,
     pairs_max: u64,
     elevations_bytes: u64,
