@@ -325,7 +325,9 @@ impl LegsMission {
                     let middle = f64::midpoint(early, late);
                     if over_m(middle).is_some_and(|over| over > 0.0) { early = middle } else { late = middle }
                 }
-                return if over_m(early).is_some() { Ok((at(early), velocity + fall * early)) } else { Err(LegsOutcome::Lost) };
+                // Where the ground ends within the step, it has not come down on it.
+                let is_on_ground = over_m(early).is_some() && over_m(late).is_some();
+                return if is_on_ground { Ok((at(early), velocity + fall * early)) } else { Err(LegsOutcome::Lost) };
             }
             was_over |= over.is_some_and(|over| over > 0.0);
             let pose = Pose { root_m: at(time_s), turn: from.turn.try_slerp(&landing.turn, share, 1e-9).unwrap_or(landing.turn) };

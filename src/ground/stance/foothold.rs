@@ -154,7 +154,8 @@ impl StanceGround {
                 continue;
             }
             let cosine = group.parts.iter().map(|part| part.normal.dot(&normal)).fold(1.0, f64::min);
-            let Some(ground) = self.mesh().friction_of(part.facet) else { continue };
+            let of_map = self.map().and_then(|map| map.friction_at(point_m.xy()));
+            let Some(ground) = of_map.or_else(|| self.mesh().friction_of(part.facet)) else { continue };
             let friction = limb.friction.filter(|foot| foot.coefficient() < ground.coefficient()).unwrap_or(ground);
             return Ok(Foothold {
                 limb: number,
@@ -182,7 +183,7 @@ impl StanceGround {
                 clipper.pieces(limb, &inside, |piece| {
                     if normal.dot(&(limb.hip_m - piece.middle)) <= 0.0 {
                         outcome = worse(outcome, LimbOutcome::FacesAway);
-                    } else if self.keeps_feet_off(facet) {
+                    } else if self.keeps_feet_off(facet) || self.map_keeps_off(pose, &piece) {
                         outcome = worse(outcome, LimbOutcome::KeptOut);
                     } else {
                         let part = Part { facet, piece, normal };
@@ -208,6 +209,11 @@ impl StanceGround {
             RestSlope::AsFrictionHolds | RestSlope::Unlimited => false,
         };
         face.ground.keep_out || is_too_steep
+    }
+
+    /// Whether a part of a facet lies where the map lets no foot stand.
+    fn map_keeps_off(&self, pose: &Pose, piece: &Piece) -> bool {
+        self.map().is_some_and(|map| map.keeps_feet_off(pose.to_ground(&piece.middle).xy()))
     }
 }
 
