@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::map::{NO_GROUND, NOT_SEARCHED, NodeLattice, Post, UNREACHED};
 use crate::{
     ballistics::stance::{ConeSum, ContactCone},
-    ground::{Foothold, LimbOutcome, NoStance, Stance, StanceBuffers, StanceGround},
+    ground::{Foothold, LimbOutcome, NoStance, Pose, Stance, StanceBuffers, StanceGround},
     progress::{Cancelled, Detail, Meter, Progress, Stage},
     quantity::SlopeInterval,
     terrain::Dem,
@@ -31,6 +31,8 @@ const NONE: u32 = u32::MAX;
 pub struct NodeStance {
     /// The most feet that find ground, whether it stands on them or not; 0 where its trunk meets the ground in every pose.
     pub legs: usize,
+    /// Which limbs find ground in some pose, a bit for each of the first 64.
+    pub limbs: u64,
     /// The share of the headings of its trunk in which it stands.
     pub headings: f64,
     /// The widest interval of take-off angles of its stances, of any direction, degrees; `None` where it does not stand.
@@ -47,6 +49,9 @@ pub struct StanceNodes {
     found: Vec<Option<NodeStance>>,
     stances: Vec<Option<Stance>>,
 }
+
+/// What a robot finds at a node, `None` without an elevation, and its stances there, heading by heading, if they are kept.
+type AtNode = (Option<NodeStance>, Vec<Option<Stance>>);
 
 /// The fewest hops from some starts to every node.
 #[derive(Clone, Debug)]
@@ -79,7 +84,7 @@ impl StanceNodes {
     ) -> Result<Self, Cancelled> {
         let meter = Meter::with_total(progress, Stage::Search, lattice.count() as u64);
         meter.report(Detail::None)?;
-        let row = |row: usize| -> Result<Vec<(Option<NodeStance>, Vec<Option<Stance>>)>, Cancelled> {
+        let row = |row: usize| -> Result<Vec<AtNode>, Cancelled> {
             meter.check()?;
             let nodes = (0..lattice.cols).map(|col| at_node(ground, (dem, lattice), Post { row, col }, headings, keeps));
             Ok(nodes.collect())
@@ -166,7 +171,9 @@ impl StanceNodes {
             hops += 1;
             meter.report(Detail::None)?;
             let mut in_layer = vec![false; self.lattice.count()];
-            layer.iter().for_each(|number| in_layer[number / self.headings as usize] = true);
+            for number in &layer {
+                in_layer[number / self.headings as usize] = true;
+            }
             let is_last = |number: usize| of_stance[number] == hops - 1;
             let joined = |buffers: &mut StanceBuffers, number: usize| -> Result<(Option<usize>, u64), Cancelled> {
                 let mut counter = meter.counter();
@@ -288,13 +295,7 @@ pub fn direction(turn: u32, of: u32) -> Vector2<f64> {
 }
 
 /// What a robot finds at a node, and its stances there, heading by heading.
-fn at_node(
-    ground: &StanceGround,
-    (dem, lattice): (&Dem, NodeLattice),
-    node: Post,
-    headings: u32,
-    keeps: bool,
-) -> (Option<NodeStance>, Vec<Option<Stance>>) {
+fn at_node(ground: &StanceGround, (dem, lattice): (&Dem, NodeLattice), node: Post, headings: u32, keeps: bool) -> AtNode {
     let mut stances = vec![None; if keeps { headings as usize } else { 0 }];
     let Some(position) = lattice.position(dem, node) else { return (None, stances) };
     let mut found = NodeStance::default();
@@ -304,8 +305,11 @@ fn at_node(
     let mut usable = [false; DIRECTIONS as usize];
     let mut standing = 0_u32;
     for turn in 0..headings {
-        let (stance, legs) = best(ground, |height_m| ground.stand_over(&contact, up, direction(turn, headings), height_m));
+        let facing = direction(turn, headings);
+        let pose = |height_m: f64| Pose::facing(contact.point_m() + up * height_m, up, facing);
+        let (stance, legs, limbs) = best(ground, pose, |height_m| ground.stand_over(&contact, up, facing, height_m));
         found.legs = found.legs.max(legs);
+        found.limbs |= limbs;
         let Some(stance) = stance else { continue };
         standing += 1;
         for (number, usable) in (0..).zip(&mut usable) {
@@ -322,15 +326,20 @@ fn at_node(
     (Some(found), stances)
 }
 
-/// The stance with most feet of all heights, the first of equal ones, and the most feet that found ground.
-fn best(ground: &StanceGround, stand: impl Fn(f64) -> Result<Stance, NoStance>) -> (Option<Stance>, usize) {
+/// The stance with most feet of all heights, the first of equal ones, the most feet that found ground, and which limbs did.
+fn best(
+    ground: &StanceGround,
+    pose: impl Fn(f64) -> Pose,
+    stand: impl Fn(f64) -> Result<Stance, NoStance>,
+) -> (Option<Stance>, usize, u64) {
     let limbs = ground.robot().limbs().len();
-    let (mut best, mut most): (Option<Stance>, usize) = (None, 0);
+    let (mut best, mut most, mut by): (Option<Stance>, usize, u64) = (None, 0, 0);
     for height_m in ground.standing_heights_m() {
         match stand(height_m) {
             Ok(stance) => {
                 let feet = stance.footholds().len();
                 most = most.max(feet);
+                by |= standing(stance.outcomes().iter().copied());
                 if best.as_ref().is_none_or(|known| feet > known.footholds().len()) {
                     best = Some(stance);
                 }
@@ -338,12 +347,25 @@ fn best(ground: &StanceGround, stand: impl Fn(f64) -> Result<Stance, NoStance>) 
                     break;
                 }
             }
-            Err(NoStance::TooFewContacts { found, .. }) => most = most.max(found),
-            Err(NoStance::Slips | NoStance::NoDirection) => most = most.max(ground.robot().contacts_min()),
+            Err(NoStance::TooFewContacts { found, limbs, .. }) => {
+                most = most.max(found);
+                by |= standing(limbs.iter().map(|(_, outcome)| *outcome));
+            }
+            // Its feet stand, and slip.
+            Err(NoStance::Slips | NoStance::NoDirection) => {
+                let (feet, outcomes) = ground.footholds(&pose(height_m));
+                most = most.max(feet.len());
+                by |= standing(outcomes.into_iter());
+            }
             Err(NoStance::InsideRock | NoStance::Trunk(_) | NoStance::NoContact(_)) => {}
         }
     }
-    (best, most)
+    (best, most, by)
+}
+
+/// A bit for each limb that stands, of the first 64.
+fn standing(outcomes: impl Iterator<Item = LimbOutcome>) -> u64 {
+    outcomes.take(64).enumerate().fold(0, |bits, (limb, outcome)| bits | u64::from(outcome == LimbOutcome::Stands) << limb)
 }
 
 /// The width of the interval of take-off angles of a cone along a heading, degrees; 0 without one.

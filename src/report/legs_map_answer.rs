@@ -38,6 +38,8 @@ pub struct LegsMapAnswer {
     pub standing_nodes: usize,
     /// By the most legs that find ground, from 0 on, how many nodes.
     pub nodes_by_legs: Vec<usize>,
+    /// At how many nodes each limb finds ground in some pose, whether the robot stands there or not.
+    pub nodes_by_limb: Vec<LimbNodesRecord>,
     /// The median of the widest beams of the nodes at which it stands, degrees; null without any.
     pub beam_median_deg: Option<f64>,
     /// The greatest of them, degrees.
@@ -52,6 +54,15 @@ pub struct LegsMapAnswer {
     pub derating: Option<DeratingRecord>,
     /// One record for each goal, in the order given.
     pub goals: Vec<LegsGoalRecord>,
+}
+
+/// Where a limb finds ground.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct LimbNodesRecord {
+    /// The name of the limb.
+    pub limb: String,
+    /// At how many nodes.
+    pub nodes: usize,
 }
 
 /// What hops from stance to stance reach.
@@ -114,6 +125,8 @@ impl LegsMapAnswer {
         ));
         let legs: Vec<String> = self.nodes_by_legs.iter().enumerate().map(|(legs, nodes)| format!("{legs}: {nodes}")).collect();
         sheet.line(format_args!("nodes by the most legs that find ground: {}", legs.join(", ")));
+        let limbs: Vec<String> = self.nodes_by_limb.iter().map(|row| format!("{} {}", row.limb, row.nodes)).collect();
+        sheet.line(format_args!("nodes at which each limb finds ground: {}", limbs.join(", ")));
         if let (Some(median), Some(most)) = (self.beam_median_deg, self.beam_max_deg) {
             sheet.line(format_args!("widest beam of take-off angles: median {median:.2} deg, greatest {most:.2} deg"));
         }

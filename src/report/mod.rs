@@ -67,7 +67,7 @@ pub use hop_answer::{
     WindowRecord,
 };
 pub use hop_margins::HopMarginsRecord;
-pub use legs_map_answer::{LegsGoalRecord, LegsMapAnswer, LegsReachRecord};
+pub use legs_map_answer::{LegsGoalRecord, LegsMapAnswer, LegsReachRecord, LimbNodesRecord};
 pub use legs_plan_answer::{LegsGroundKind, LegsGroundRecord, LegsPlanAnswer, RefusedPosesRecord, StanceRecord, legs_plan_text};
 pub use legs_simulate_answer::{EndedInHopRecord, LegsOutcomeRecord, LegsSimulateAnswer, LegsTrialsRecord, legs_simulate_text};
 pub use legs_trade_answer::{LegsTradeAnswer, LegsTradeRow};

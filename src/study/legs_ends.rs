@@ -9,6 +9,7 @@ use super::{
     mesh_ends::{MeshEnds, mesh_ends, within},
     mesh_hop::on_mesh,
     on_body::dem_on_body,
+    stance::faces_down,
 };
 use crate::{
     ground::{MeshContact, MeshGround},
@@ -49,7 +50,8 @@ pub(super) struct LegsEnds {
 /// [`LegsRouteError`].
 pub(super) fn legs_ends(scenario: &Scenario, base: &Path, robot: &Robot) -> Result<LegsEnds, LegsRouteError> {
     let Some(TerrainSource::Dem { path, start, goal }) = &scenario.terrain else {
-        let MeshEnds { ground, scale, given_m, surface, warnings, .. } = mesh_ends(scenario, base, 0.0)?;
+        let MeshEnds { ground, scale, given_m, surface, mut warnings, .. } = mesh_ends(scenario, base, 0.0)?;
+        warnings.extend(["start", "goal"].iter().zip(&surface).filter_map(|(end, at)| faces_down(at, end)));
         let facets = ground.tree().mesh().triangle_count();
         let record = LegsGroundRecord { kind: LegsGroundKind::Mesh, facets, post_spacing_m: None, no_data_posts: None };
         return Ok(LegsEnds { ground, map: None, crs: None, scale, given_m, surface, record, warnings });

@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
+use nalgebra::Point3;
+
 use super::{
     Defect, LegsRouteError, MeshRouteError,
     legs_ends::{DemGroundOfLegs, dem_ground_of_legs, planned_map},
     legs_route::assumptions,
     map::{MapStudyError, NamedPlace, Spot, spot},
-    stance::with_robot,
+    nodes::{coarse_nodes, level_hop_of_m},
+    stance::{best_stance, with_robot},
 };
 use crate::{
     ballistics::Arc,
@@ -19,7 +22,7 @@ use crate::{
         map::NodeLattice,
         stances::{StanceHops, StanceNodes},
     },
-    report::{CrsRecord, LegsGoalRecord, LegsMapAnswer, LegsReachRecord, SizeAnswer, SizeRecord},
+    report::{CrsRecord, LegsGoalRecord, LegsMapAnswer, LegsReachRecord, LimbNodesRecord, SizeAnswer, SizeRecord},
     scenario::{Scenario, read_robot},
     terrain::{Dem, OverlaidDem, check_map_scale},
 };
@@ -62,8 +65,8 @@ pub enum LegsMapError {
     Point,
     /// A start at which it cannot stand.
     #[error(
-        "{name}: the robot cannot stand at the nearest node, ({}, {}) m, in any of {headings} headings; choose another start, or more headings \
-         (robot.headings)", at.x, at.y
+        "{name}: the robot cannot stand at the nearest node, ({}, {}) m, in any of {headings} headings: {refusal}; choose another start, or more \
+         headings (robot.headings)", at.x, at.y
     )]
     NoStance {
         /// What the caller calls the start.
@@ -72,6 +75,8 @@ pub enum LegsMapError {
         at: MapPoint,
         /// The headings tried.
         headings: u32,
+        /// The refusal that was the nearest to a stance.
+        refusal: String,
     },
 }
 
@@ -150,6 +155,10 @@ impl PreparedLegsMap {
             warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
         }
         warnings.extend(assumptions(&ground));
+        let spacing = lattice.map(dem.georeference());
+        let envelope = ground.mesh().envelope();
+        let hop_m = level_hop_of_m(envelope.hopper(), envelope.gravity_m_s2());
+        warnings.extend(coarse_nodes(hop_m, "the map", spacing.dx_m().max(spacing.dy_m())).filter(|_| !starts.is_empty()));
         let headings = scenario.legs.headings.unwrap_or(HEADINGS);
         let size = size(&ground, (dem, lattice), headings, !starts.is_empty());
         if let Some(allowed_bytes) = question.memory_max_bytes.filter(|allowed_bytes| size.bytes_max > *allowed_bytes) {
@@ -171,6 +180,7 @@ impl PreparedLegsMap {
             no_data_nodes: 0,
             standing_nodes: 0,
             nodes_by_legs: Vec::new(),
+            nodes_by_limb: Vec::new(),
             beam_median_deg: None,
             beam_max_deg: None,
             starts_m: starts.iter().map(|start| [start.at.x, start.at.y]).collect(),
@@ -179,7 +189,7 @@ impl PreparedLegsMap {
             goals: Vec::new(),
         };
         let crs = projection.as_ref().ok().map(CrsRecord::from);
-        Ok(Self { ground, scenario, lattice, starts, goals, crs, size, headings, answer, warnings, map })
+        Ok(Self { ground, map, scenario, lattice, starts, goals, crs, size, headings, answer, warnings })
     }
 
     /// The elevations.
@@ -198,13 +208,20 @@ impl PreparedLegsMap {
         let nodes = StanceNodes::of(&self.ground, (dem, lattice), self.headings, keeps, progress).map_err(cancelled)?;
         for start in &self.starts {
             if nodes.found(lattice.index(start.post)).is_none_or(|found| found.headings == 0.0) {
-                return Err(LegsMapError::NoStance { name: start.name.clone(), at: start.at, headings: self.headings });
+                let (name, at, headings) = (start.name.clone(), start.at, self.headings);
+                return Err(LegsMapError::NoStance { name, at, headings, refusal: self.refusal(start) });
             }
         }
         let posts: Vec<_> = self.starts.iter().map(|start| start.post).collect();
         let hops = keeps.then(|| nodes.hops(&self.ground, &posts, question.hops_max, progress)).transpose().map_err(cancelled)?;
         let mut answer = self.counted(&nodes);
-        let mut warnings = Vec::new();
+        let mut warnings: Vec<String> = Vec::new();
+        warnings.extend(answer.nodes_by_limb.iter().filter(|row| row.nodes == 0).map(|row| {
+            format!(
+                "{} finds ground at none of {} nodes, in any heading and at any height: check its workspace, or the distance of the posts",
+                row.limb, answer.nodes
+            )
+        }));
         if let Some(hops) = &hops {
             answer.reach = Some(reach(hops, &nodes, question.hops_max));
             for goal in &self.goals {
@@ -223,6 +240,15 @@ impl PreparedLegsMap {
             warnings.push("goals have no effect without a start: hops lead from one to the other".to_owned());
         }
         Ok(LegsMap { nodes, hops, answer, warnings })
+    }
+
+    /// Why it cannot stand at a start: the refusal that was the nearest to a stance.
+    fn refusal(&self, start: &Spot) -> String {
+        let position = self.lattice.position(self.dem(), start.post);
+        let at = position.map(|position| Point3::new(position.at.x, position.at.y, position.z_m));
+        let contact = at.and_then(|at| self.ground.mesh().contact(at).ok());
+        let refusal = contact.and_then(|contact| best_stance(&self.ground, &contact, (None, None)).refusal);
+        refusal.map(|refusal| refusal.to_string()).unwrap_or_default()
     }
 
     /// The path to a goal, flown again by the independent checker.
@@ -248,11 +274,17 @@ impl PreparedLegsMap {
         beams.sort_by(f64::total_cmp);
         let limbs = self.ground.robot().limbs().len();
         let nodes_by_legs = (0..=limbs).map(|legs| found.iter().filter(|node| node.legs == legs).count()).collect();
+        let names = self.ground.robot().limbs().iter().take(u64::BITS as usize).enumerate();
+        let nodes_by_limb = names.map(|(number, limb)| LimbNodesRecord {
+            limb: limb.name.clone(),
+            nodes: found.iter().filter(|node| node.limbs >> number & 1 == 1).count(),
+        });
         LegsMapAnswer {
             nodes: found.len(),
             no_data_nodes: self.lattice.count() - found.len(),
             standing_nodes: beams.len(),
             nodes_by_legs,
+            nodes_by_limb: nodes_by_limb.collect(),
             beam_median_deg: beams.get(beams.len().saturating_sub(1) / 2).copied(),
             beam_max_deg: beams.last().copied(),
             ..self.answer.clone()
@@ -265,7 +297,9 @@ fn reach(hops: &StanceHops, nodes: &StanceNodes, hops_max: Option<i16>) -> LegsR
     let reached: Vec<usize> = hops.hops.iter().filter_map(|hops| usize::try_from(*hops).ok()).collect();
     let most = reached.iter().copied().max().unwrap_or(0);
     let mut hops_histogram = vec![0; most + 1];
-    reached.iter().for_each(|hops| hops_histogram[*hops] += 1);
+    for hops in &reached {
+        hops_histogram[*hops] += 1;
+    }
     LegsReachRecord {
         reached_nodes: reached.len(),
         hops_max,

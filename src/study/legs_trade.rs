@@ -73,6 +73,13 @@ pub fn legs_trade(question: &LegsTradeQuestion<'_>, progress: &dyn Progress) -> 
         }
         ground = ground.or(Some(ends.record));
         let traded = Traded::new(&scenario, &ends, read.robot)?;
+        if traded.exact.limits_pushes() {
+            warnings.push(format!(
+                "{}: stroke, forces and spin are looked at in steps over a window, which may miss a narrow part of a wider one: a wider cone may join a few \
+                 pairs less",
+                traded.exact.robot().name()
+            ));
+        }
         for cone in cones {
             rows.push(traded.row(&scenario, *cone, progress)?);
         }
@@ -138,7 +145,7 @@ impl<'e> Traded<'e> {
         let mut roadmap = Roadmap::new();
         roadmap.extend(&ground, stances, progress)?;
         let joined_pairs = (0..count).map(|node| roadmap.hops_from(node).count() as u64).sum();
-        let path = if stand_at_ends { self.path(scenario, &ground, &roadmap)? } else { None };
+        let path = if stand_at_ends { best_path(scenario, &ground, &roadmap)? } else { None };
         Ok(LegsTradeRow {
             robot: ground.robot().name().to_owned(),
             limbs: ground.robot().limbs().len(),
@@ -153,32 +160,27 @@ impl<'e> Traded<'e> {
             flight_time_s: path.map(|path| path.1),
         })
     }
+}
 
-    /// Hops and time in flight of the best path from the first stance to the second, flown again.
-    fn path(
-        &self,
-        scenario: &Scenario,
-        ground: &StanceGround,
-        roadmap: &Roadmap<Stance>,
-    ) -> Result<Option<(u64, f64)>, LegsRouteError> {
-        let (objective, budgets) = (scenario.full_objective(), scenario.total_budgets());
-        let asked = RoadmapQuestion {
-            objective: &objective,
-            budgets: &budgets,
-            commands: scenario.commands,
-            takeoff: scenario.search.takeoff,
-            cap: LabelCap::default(),
-        };
-        let route = roadmap.route(ground, (0, 1), &asked)?;
-        let Some(found) = route.path.filter(|_| route.within) else { return Ok(None) };
-        let stances: Vec<&Stance> = found.contacts.iter().map(|node| roadmap.contact(*node)).collect();
-        let path = path_over_stances(ground, &stances, &found.arcs).ok_or(MeshRouteError::Lost)?;
-        let violations = flown_by_stances(ground, &stances, &path);
-        if violations.is_empty() {
-            Ok(Some((path.hops.len() as u64, path.totals.flight_time_s)))
-        } else {
-            Err(LegsRouteError::Defect { violations })
-        }
+/// Hops and time in flight of the best path from the first stance to the second, flown again.
+fn best_path(scenario: &Scenario, ground: &StanceGround, roadmap: &Roadmap<Stance>) -> Result<Option<(u64, f64)>, LegsRouteError> {
+    let (objective, budgets) = (scenario.full_objective(), scenario.total_budgets());
+    let asked = RoadmapQuestion {
+        objective: &objective,
+        budgets: &budgets,
+        commands: scenario.commands,
+        takeoff: scenario.search.takeoff,
+        cap: LabelCap::default(),
+    };
+    let route = roadmap.route(ground, (0, 1), &asked)?;
+    let Some(found) = route.path.filter(|_| route.within) else { return Ok(None) };
+    let stances: Vec<&Stance> = found.contacts.iter().map(|node| roadmap.contact(*node)).collect();
+    let path = path_over_stances(ground, &stances, &found.arcs).ok_or(MeshRouteError::Lost)?;
+    let violations = flown_by_stances(ground, &stances, &path);
+    if violations.is_empty() {
+        Ok(Some((path.hops.len() as u64, path.totals.flight_time_s)))
+    } else {
+        Err(LegsRouteError::Defect { violations })
     }
 }
 

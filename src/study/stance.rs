@@ -153,6 +153,7 @@ pub fn stand(question: &StanceQuestion<'_>) -> Result<Stood, StanceError> {
         (None, Some(refusal)) => StanceAnswer::of_refusal(ground.robot().name(), refusal, tried),
         (None, None) => StanceAnswer::of_contacts(&[], *headings),
     };
+    warnings.extend(faces_down(&at, "place"));
     let spread = answer.contacts.iter().filter_map(|foot| Some((foot.limb.clone()?, foot.spread_deg?)));
     warnings.extend(spread.filter(|(_, deg)| *deg > WIDE_SPREAD_DEG).map(|(limb, deg)| {
         format!("{limb} stands on facets that differ by up to {deg:.1} deg from the normal that stands for them: a ridge or a notch within its reach")
@@ -206,6 +207,17 @@ pub(super) fn best_stance(
         }
     }
     BestStance { best: best.map(|(_, stance, height_m)| (stance, height_m)), refusal, tried }
+}
+
+/// A warning where a robot would hang under a place: its facets face down.
+pub(super) fn faces_down(at: &MeshContact, place: &str) -> Option<String> {
+    let normal: Vector3<f64> = at.facets().iter().map(|facet| facet.normal).sum();
+    (normal.z < 0.0).then(|| {
+        format!(
+            "the facets at the {place} face down, by the order of their corners: the robot is under them; of a mesh that is inverted reverse the \
+             order"
+        )
+    })
 }
 
 /// Contacts without a robot, from a table: `normal_x,normal_y,normal_z,friction_coefficient`, one row a contact.

@@ -24,6 +24,9 @@ const BATCH: u64 = 200;
 /// Steps of a flight to its planned end.
 const STEPS: u32 = 200;
 
+/// A direction this far outside the cone of the feet, of 1, is on its edge.
+const ON_THE_EDGE: f64 = 1.0e-6;
+
 /// A flight that has not come down after so many times its planned duration has left the ground.
 const LONGEST: u32 = 4;
 
@@ -296,7 +299,10 @@ impl LegsMission {
 
     /// Whether the feet of a stance do not push in a direction.
     fn is_refused(&self, stance: &Stance, push: Vector3<f64>) -> bool {
-        let inside = stance.cone().is_none_or(|cone| cone.contains(push));
+        // A planned arc may lie on the edge of its window, where rounding decides: the sum of the normals is well inside the cone.
+        let inwards: Vector3<f64> = stance.footholds().iter().map(|foot| foot.normal).sum();
+        let within = push / push.norm().max(f64::MIN_POSITIVE) + inwards * ON_THE_EDGE;
+        let inside = stance.cone().is_none_or(|cone| cone.contains(push) || cone.contains(within));
         let refused: Option<Limit> = self.whole.refuses_push(stance, push);
         !inside || refused.is_some()
     }

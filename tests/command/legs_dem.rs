@@ -108,7 +108,7 @@ fn zones_layers_and_friction_of_the_map_count_where_feet_stand() {
     let is_in = |foot: &[f64]| (6.75..=8.25).contains(&foot[0]);
     let plain = desk.json(&["plan", "plan.toml"]);
     assert_eq!(plain["verdict"], "traversable");
-    for key in ["surface.keep_out=mask.asc", "layer.sun={ raster = \"sun.asc\", min = 0.5, applies_to = \"contact\" }"] {
+    for key in ["surface.keep_out=mask.asc", "layer.sun={ raster = \"sun.asc\", min = 0.5, applies_to = [\"contact\"] }"] {
         let document = desk.json(&["plan", "plan.toml", "--set", key]);
         assert_eq!(document["verdict"], "traversable", "{key}: {}", document["gap"]);
         assert!(feet(&document).iter().all(|foot| !is_in(foot)), "{key}");
@@ -117,7 +117,7 @@ fn zones_layers_and_friction_of_the_map_count_where_feet_stand() {
         assert!(stance["refusal"].as_str().unwrap().contains("kept out"), "{stance}");
     }
     // A flight that asks for the sun does not cross the strip.
-    let flight = "layer.sun={ raster = \"sun.asc\", min = 0.5, applies_to = \"both\" }";
+    let flight = "layer.sun={ raster = \"sun.asc\", min = 0.5, applies_to = [\"contact\", \"flight\"] }";
     let shaded = desk.json(&["plan", "plan.toml", "--set", flight]);
     assert_eq!(shaded["verdict"], "no-path-found");
     let refusals = shaded["gap"]["refusals"].to_string();
@@ -168,22 +168,15 @@ fn maps_of_stances_count_what_stances_and_plans_find() {
     assert_eq!(hops.elevations().filter(Option::is_none).count(), gaps);
     let goal = &document["goals"][0];
     assert!(goal["hops"].as_u64().unwrap() >= 2 && goal["verified"] == true, "{goal}");
-    // A node beside the gap against the command that looks at one place.
-    let legs = raster(&desk.path().join("stances.tif"));
-    for (row, col) in [(2, 3), (7, 7), (12, 15)] {
-        let (x, y) = (f64::from(col), 14.5 - f64::from(row));
-        let stance =
-            desk.run(&["stance", "ground.asc", &format!("--at={x},{y}"), "--scenario", "plan.toml", "--format", "json", "--quiet"]);
-        let stance: Value = serde_json::from_str(&stance.stdout).unwrap();
-        let stand = stance["contacts"].as_array().unwrap().iter().filter(|foot| foot["outcome"] == "stands").count();
-        #[expect(
-            clippy::cast_precision_loss,
-            clippy::cast_sign_loss,
-            clippy::cast_possible_truncation,
-            reason = "a place of the raster"
-        )]
-        let of_map = legs.elevation(row as usize, col as usize);
-        assert_eq!(of_map, Some(stand as f64), "{x} {y}");
+    // Every node has its count of legs, and no limb finds ground at fewer nodes than all of them together.
+    let by_legs = numbers(&document["nodes_by_legs"]);
+    assert_eq!(by_legs.iter().sum::<f64>(), document["nodes"].as_f64().unwrap());
+    let by_limb = document["nodes_by_limb"].as_array().unwrap();
+    assert!(by_limb.len() == 4 && by_limb.iter().all(|row| row["nodes"].as_f64().unwrap() >= by_legs[4]), "{document}");
+    let bands = std::fs::read(desk.path().join("stances.tif")).unwrap();
+    let names = String::from_utf8_lossy(&bands).into_owned();
+    for name in ["most legs that find ground", "widest beam", "share of 36 directions", "share of the headings"] {
+        assert!(names.contains(name), "{name}");
     }
     // The same bytes for any number of threads.
     let (before, one) =
@@ -195,7 +188,7 @@ fn maps_of_stances_count_what_stances_and_plans_find() {
     desk.write("bare.toml", scenario("").split("[terrain]").next().unwrap());
     let alone = desk.json(&["map", "ground.asc", "--scenario", "bare.toml", "--stride", "4", "--mobility", "alone.tif"]);
     assert!(alone.get("reach").is_none() && alone["headings"] == 8, "{alone}");
-    let size = desk.json(&[&map[..5], &["--dry-run"]].concat());
+    let size = desk.json(&[&map[..4], &["--dry-run"]].concat());
     assert_eq!((size["nodes"].as_u64(), size["posts"].as_u64()), (Some(nodes), Some(1200)));
 }
 
@@ -234,7 +227,14 @@ fn what_a_raster_does_not_give_legs_is_refused() {
 #[test]
 fn wider_cones_are_never_worse_over_the_same_poses() {
     let (desk, _) = desk(false);
-    let words = ["trade", "plan.toml", "--set", "search.contacts_max=80", "--vary", "robot.cone=kc,kc-plus,pyramid-4,pyramid-8,pyramid-16,exact"];
+    let words = [
+        "trade",
+        "plan.toml",
+        "--set",
+        "search.contacts_max=80",
+        "--vary",
+        "robot.cone=kc,kc-plus,pyramid-4,pyramid-8,pyramid-16,exact",
+    ];
     let document = desk.json(&words);
     let rows = document["rows"].as_array().unwrap();
     let row = |cone: &str| rows.iter().find(|row| row["cone"] == cone).unwrap();
@@ -255,7 +255,16 @@ fn wider_cones_are_never_worse_over_the_same_poses() {
     let all = light();
     let blocks: Vec<&str> = all.split("[[limb]]").collect();
     desk.write("three.toml", blocks[..4].join("[[limb]]").replace("four legs", "three legs"));
-    let limbs = desk.json(&["trade", "plan.toml", "--set", "search.contacts_max=60", "--vary", "robot.file=legs.toml,three.toml", "-o", "rows.csv"]);
+    let limbs = desk.json(&[
+        "trade",
+        "plan.toml",
+        "--set",
+        "search.contacts_max=60",
+        "--vary",
+        "robot.file=legs.toml,three.toml",
+        "-o",
+        "rows.csv",
+    ]);
     let rows = limbs["rows"].as_array().unwrap();
     assert_eq!(rows.iter().map(|row| row["limbs"].as_u64().unwrap()).collect::<Vec<_>>(), [4, 3]);
     assert!(rows[0]["beam_mean_deg"].as_f64() > rows[1]["beam_mean_deg"].as_f64(), "{limbs}");
@@ -290,4 +299,46 @@ fn results_of_legs_are_flown_again_as_they_stand() {
     spoiled(&|result| result["path"][1]["takeoff_angle_deg"] = 5.0.into(), &["direction", "landing-point"]);
     spoiled(&|result| result["stances"][1]["pose"]["root_m"][2] = 9.0.into(), &["stance"]);
     spoiled(&|result| result["stances"][0]["pose"]["root_m"] = serde_json::json!([2, 12, 0.3]), &["stance"]);
+}
+
+#[test]
+fn what_makes_no_stance_is_named() {
+    let (desk, _) = desk(false);
+    let plan = |key: &str, parts: &[&str]| desk.refused(&["plan", "plan.toml", "--set", key], parts);
+    plan("surface.friction_coefficient=0", &["found surface.friction_coefficient of 0", "expected a number above 0"]);
+    // A limb that points up finds no ground anywhere.
+    desk.write(
+        "up.toml",
+        light().replacen("axis = [0.1, 0.2, -1]", "axis = [0, 0, 1]", 1).replace("contacts_min = 3", "contacts_min = 4"),
+    );
+    plan(
+        "robot.file=up.toml",
+        &["cannot stand at the start", "3 of 4 feet stand, expected at least 4: front left reaches no ground"],
+    );
+    desk.refused(
+        &["map", "plan.toml", "--stride", "5", "--set", "robot.file=up.toml"],
+        &["terrain.start_m", "front left reaches no ground"],
+    );
+    desk.write("bare.toml", scenario("").split("[terrain]").next().unwrap().replace("legs.toml", "up.toml"));
+    let map = desk.run(&["map", "ground.asc", "--scenario", "bare.toml", "--stride", "5", "--mobility", "up.tif"]);
+    assert!(map.status == 0 && map.stderr.contains("front left finds ground at none of 48 nodes"), "{map:?}");
+    assert!(map.stdout.contains("stands on 4 feet or more at 0 nodes"), "{map:?}");
+    desk.write("none.toml", "[robot]\nname = \"none\"\n[[trunk]]\nsize_m = [0.1, 0.1, 0.1]\n");
+    plan("robot.file=none.toml", &["none.toml:1:2", "limb is absent, expected at least one limb"]);
+    desk.write("inside_out.toml", light().replace("size_m = [0.46, 0.2, 0.12]", "size_m = [-0.46, 0.2, 0.12]"));
+    plan("robot.file=inside_out.toml", &["trunk box 1: size_m is [-0.46, 0.2, 0.12], expected three finite numbers above 0"]);
+    // A mesh whose corners go round the other way: its outer side is below.
+    desk.write("inverted.obj", "v -3 -3 0\nv 3 -3 0\nv 3 3 0\nv -3 3 0\nf 1 4 3\nf 1 3 2\n");
+    let inverted = desk.run(&["stance", "inverted.obj", "--at=0,0,0.1", "--scenario", "plan.toml"]);
+    assert!(inverted.status == 1 && inverted.stderr.contains("the facets at the place face down"), "{inverted:?}");
+    // In the air each limb is named; inside a closed body the root is.
+    let air = desk.run(&["stance", "ground.asc", "--at=4,4", "--height-m", "3", "--scenario", "plan.toml"]);
+    assert!(air.status == 1 && air.stdout.contains("front left reaches no ground, front right reaches no ground"), "{air:?}");
+    desk.write(
+        "rock.obj",
+        "v 0 0 0\nv 9 0 0\nv 9 9 0\nv 0 9 0\nv 0 0 9\nv 9 0 9\nv 9 9 9\nv 0 9 9\nf 1 3 2\nf 1 4 3\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\n\
+         f 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n",
+    );
+    let rock = desk.run(&["stance", "rock.obj", "--at=4,4,9", "--height-m=-3", "--scenario", "plan.toml"]);
+    assert!(rock.status == 1 && rock.stdout.contains("the root of the robot lies inside a closed body of the mesh"), "{rock:?}");
 }

@@ -63,13 +63,22 @@ pub enum StandsUp {
     Vertical,
 }
 
-/// A ground whose surface states no friction.
+/// A ground whose surface gives feet no friction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "the surface states its grip by angles from the slope, expected a friction coefficient: feet on slopes of several directions push by \
-     friction; give surface.friction_coefficient"
-)]
-pub struct NoFriction;
+pub enum NoFriction {
+    /// The surface states angles.
+    #[error(
+        "the surface states its grip by angles from the slope, expected a friction coefficient: feet on slopes of several directions push by \
+         friction; give surface.friction_coefficient"
+    )]
+    Angles,
+    /// A coefficient of 0.
+    #[error(
+        "found surface.friction_coefficient of 0, expected a number above 0 for a robot with legs: feet without friction push along the normal alone \
+         and do not stand"
+    )]
+    Zero,
+}
 
 /// Buffers of one stance and one hop after another.
 #[derive(Clone, Debug, Default)]
@@ -85,8 +94,12 @@ impl StanceGround {
     pub fn new(mesh: MeshGround, robot: impl Into<Arc<Robot>>, cone: ConeKind, up: StandsUp) -> Result<Self, NoFriction> {
         let robot = robot.into();
         let ground = Self { mesh, robot, cone, up, map: None };
-        let stated = ground.mesh.surface().constant_friction().is_some() || ground.is_point();
-        if stated { Ok(ground) } else { Err(NoFriction) }
+        match ground.mesh.surface().constant_friction() {
+            _ if ground.is_point() => Ok(ground),
+            Some(friction) if friction.coefficient() > 0.0 => Ok(ground),
+            Some(_) => Err(NoFriction::Zero),
+            None => Err(NoFriction::Angles),
+        }
     }
 
     /// The same over the facets of a DEM, with what its map lays over them.
