@@ -17,13 +17,14 @@ fn light() -> String {
 fn ground(gap: bool) -> String {
     let mut text = "ncols 40\nnrows 30\nxllcenter 0\nyllcenter 0\ncellsize 0.5\nNODATA_value -9999\n".to_owned();
     for row in 0..30 {
-        for col in 0..40 {
+        let height = |col: u32| {
             let (x, y) = (0.5 * f64::from(col), 0.5 * f64::from(29 - row));
             let z = 0.3 * (0.7 * x).sin() * (0.5 * y).cos();
             let is_gap = gap && (16..=19).contains(&col) && row >= 8;
-            text += &if is_gap { "-9999 ".to_owned() } else { format!("{z:.4} ") };
-        }
-        text += "\n";
+            if is_gap { "-9999".to_owned() } else { format!("{z:.4}") }
+        };
+        text.push_str(&(0..40).map(height).collect::<Vec<_>>().join(" "));
+        text.push('\n');
     }
     text
 }

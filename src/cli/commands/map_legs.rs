@@ -15,8 +15,16 @@ use crate::cli::{
     progress::Progress,
 };
 
+/// The map of a machine that stands on legs or drives; `None` for one that hops alone.
+pub(super) fn of_legs_or_wheels(args: &MapArgs, input: &MapInput) -> Option<Result<Answer, Failure>> {
+    if input.bare.scenario.legs.file.is_some() {
+        return Some(run(args, input));
+    }
+    input.bare.scenario.drives().is_some().then(|| super::map_travel::run(args, input))
+}
+
 /// Computes and writes the map.
-pub(super) fn run(args: &MapArgs, input: &MapInput) -> Result<Answer, Failure> {
+fn run(args: &MapArgs, input: &MapInput) -> Result<Answer, Failure> {
     not_on_mesh::refuse_of_legs_map(args)?;
     let quiet = args.common.quiet;
     let question = input.legs_question(args);

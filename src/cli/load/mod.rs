@@ -432,10 +432,10 @@ pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure
 /// The robot file of a scenario over a DEM, for a result.
 pub(crate) fn robot_files_of(bare: &Bare) -> Result<Vec<InputFile>, Failure> {
     let file = bare.scenario.legs.file.iter().map(|file| bare.base.join(file)).collect::<Vec<_>>();
-    file.iter().for_each(|file| {
+    for file in &file {
         claims::reads(file);
         verbose::read(file);
-    });
+    }
     Ok(checksums(&file, &relative_name)?)
 }
 
