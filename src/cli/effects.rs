@@ -166,6 +166,7 @@ impl Purpose {
             {
                 true
             }
+            ("robot", "headings") => matches!(self, Self::Map { .. }),
             ("terrain", "route") => !matches!(self, Self::Hop | Self::Fan | Self::Map { .. } | Self::Sites { .. }),
             ("terrain", name) => !(on_a_dem && gives_way_to_a_dem(name)),
             ("search", "points_per_segment") => !matches!(self, Self::Hop | Self::Map { .. } | Self::Sites { .. }),
@@ -173,7 +174,7 @@ impl Purpose {
             // Of free routes over meshes.
             ("search", "planner") => matches!(self, Self::Plan | Self::Run | Self::Simulate | Self::Compare),
             ("search", "contacts_max" | "stand_off_m" | "bounds_m" | "seed" | "time_max_s") => {
-                matches!(self, Self::Plan | Self::Run | Self::Simulate | Self::Compare | Self::MapMesh)
+                matches!(self, Self::Plan | Self::Run | Self::Simulate | Self::Compare | Self::MapMesh | Self::Trade)
             }
             ("search", _) if self == Self::MapMesh => false,
             ("search", "effort" | "takeoff_angle" | "split") if by_objective => true,
@@ -213,9 +214,9 @@ impl Purpose {
         }
     }
 
-    /// Whether it answers for a robot with legs over a mesh.
+    /// Whether it answers for a robot with legs.
     pub(crate) const fn stands_on_legs(self) -> bool {
-        matches!(self, Self::Plan | Self::Simulate)
+        matches!(self, Self::Plan | Self::Simulate | Self::Check | Self::Trade | Self::Map { .. })
     }
 
     /// Whether its paths are those of an objective within budgets, where the scenario has them.

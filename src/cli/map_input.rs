@@ -5,7 +5,10 @@ use std::path::Path;
 use chta::{
     chain::csv::read_positions_csv_file,
     quantity::MapPoint,
-    study::map::{MapQuestion, MapStudyError, NamedPlace},
+    study::{
+        LegsMapQuestion,
+        map::{MapQuestion, MapStudyError, NamedPlace},
+    },
     terrain::{LonLat, MapPlace},
 };
 
@@ -95,6 +98,20 @@ impl MapInput {
     /// The failure for an error of the study.
     pub(crate) fn failure(&self, error: &MapStudyError) -> Failure {
         Failure::about(&self.bare.dem, error)
+    }
+
+    /// The question of a robot with legs.
+    pub(crate) fn legs_question<'a>(&'a self, args: &MapArgs) -> LegsMapQuestion<'a> {
+        LegsMapQuestion {
+            scenario: &self.bare.scenario,
+            base: &self.bare.base,
+            dem: &self.bare.dem,
+            starts: self.starts.clone(),
+            goals: self.goals.clone(),
+            stride: args.stride as usize,
+            hops_max: args.hops_max,
+            memory_max_bytes: args.size.memory_max_bytes(),
+        }
     }
 
     /// All warnings, those of the study last, printed on standard error.

@@ -25,6 +25,7 @@ mod sites_input;
 mod threads;
 mod trajectory;
 mod unanswered;
+mod varied_legs;
 mod verbose;
 mod views;
 mod whole_file;

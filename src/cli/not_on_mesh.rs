@@ -19,6 +19,27 @@ pub(crate) fn refuse_for_legs(options: &[Given]) -> Result<(), Failure> {
     Err(Failure::message(format!("{option}: found this option, which {what}, and robot.file names a robot with legs: {LEAVE_OUT}")))
 }
 
+/// Refuses the options of a map that only a point answers.
+pub(crate) fn refuse_of_legs_map(args: &MapArgs) -> Result<(), Failure> {
+    const OF_POINTS: &str = "is about hops of a point";
+    const OF_GOALS: &str = "follows the hops of a point to a goal (chta plan answers for stances on the way to one)";
+    refuse_for_legs(&[
+        ("--node-spacing-max-m", args.node_spacing_max_m.is_some(), "sets nodes finer than posts (--stride thins them)"),
+        ("--effort", args.effort.is_some(), OF_POINTS),
+        ("--objective", !args.objective.is_empty(), "weighs hops of a point (over stances hops alone are counted)"),
+        ("--return", args.back, OF_POINTS),
+        ("--effort-output", args.effort_output.is_some(), OF_POINTS),
+        ("--amount-output", !args.amount_output.is_empty(), OF_POINTS),
+        ("--return-output", args.return_output.is_some(), OF_POINTS),
+        ("--nearest-output", args.nearest_output.is_some(), OF_POINTS),
+        ("--predecessor-output", args.predecessor_output.is_some(), OF_POINTS),
+        ("--simulate", args.simulate, OF_GOALS),
+        ("--paths", args.paths.is_some(), OF_GOALS),
+        ("--geojson", args.geojson.is_some(), OF_GOALS),
+        ("--profiles", args.profiles.is_some(), OF_GOALS),
+    ])
+}
+
 fn refuse_with(options: &[Given], mend: impl Fn(&str) -> &'static str) -> Result<(), Failure> {
     let Some((option, _, what)) = options.iter().find(|(_, given, _)| *given) else { return Ok(()) };
     let mend = mend(what);

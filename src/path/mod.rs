@@ -5,6 +5,7 @@ mod execute;
 mod generate;
 mod hop;
 mod over_mesh;
+mod pushes_again;
 mod stances_again;
 #[cfg(test)]
 mod stances_tests;

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!     feet       within reach of their limbs, on the mesh, and faced by their hips
-//!     push       v = f_1 + ... + f_h with f_i in K_i: by projections, one contact after another, until nothing of v is left
+//!     push       v = f_1 + ... + f_h with f_i in K_i: by forces on rays that are added one after another, until nothing of v is left
 //!     trunk      Newton's equations in 2000 steps, turned evenly; no box meets a triangle by the separating-axis test
 //! ```
 
@@ -11,21 +11,19 @@ use std::fmt;
 
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
-use super::{Hop, HopPath};
+use super::{Hop, HopPath, pushes_again::left_of};
 use crate::{
     ground::{Foothold, Stance, StanceGround},
     quantity::FacetId,
+    terrain::Triangles,
     world::{Contact, Robot, tolerant_speed_m_s},
 };
 
 /// Steps of a flight at which the trunk is looked at.
 const STEPS: u32 = 2_000;
 
-/// What may be left of a direction of length 1 that the feet push in: the projections come this near to one on the edge of its cone.
+/// What may be left of a direction of length 1 that the feet push in: the sums of forces come this near to one on the edge of its cone.
 const LEFT: f64 = 1.0e-6;
-
-/// The most rounds of projections.
-const ROUNDS: u32 = 20_000;
 
 /// A landing this share of the size of a flight beside its stance is one beside it by rounding.
 const PLACE: f64 = 1.0e-9;
@@ -40,6 +38,21 @@ pub struct StanceViolation {
     pub hop: usize,
     /// What.
     pub fault: StanceFault,
+}
+
+impl StanceViolation {
+    /// The name of the limit that is broken.
+    pub const fn limit(&self) -> &'static str {
+        match self.fault {
+            StanceFault::Elsewhere { .. } => "landing-point",
+            StanceFault::Foot { .. } => "stance",
+            StanceFault::Direction { .. } => "direction",
+            StanceFault::Speed { contact: Contact::Takeoff, .. } => "takeoff-speed",
+            StanceFault::Speed { contact: Contact::Landing, .. } => "landing-speed",
+            StanceFault::Trunk { .. } => "terrain",
+            StanceFault::Map { .. } => "map",
+        }
+    }
 }
 
 /// A fault of a hop between two stances.
@@ -81,6 +94,11 @@ pub enum StanceFault {
         part: usize,
         /// Which facet.
         facet: FacetId,
+    },
+    /// It flies over ground that is not known, or where a layer of its map does not hold.
+    Map {
+        /// After this time, s.
+        time_s: f64,
     },
 }
 
@@ -131,7 +149,31 @@ fn faults(ground: &StanceGround, ends: [&Stance; 2], hop: &Hop) -> Vec<StanceFau
     }
     let place = |time_s: f64| hop.takeoff.point_m + liftoff * time_s + fall * (0.5 * time_s * time_s);
     faults.extend(trunk_meets(ground, ends, t, place));
+    faults.extend(map_refuses(ground, t, place));
     faults
+}
+
+/// The first step at which the root is over ground of a map that is not known, or where a layer asks for what is not there.
+fn map_refuses(ground: &StanceGround, time_s: f64, place: impl Fn(f64) -> Point3<f64>) -> Option<StanceFault> {
+    let terrain = ground.map()?.terrain();
+    let triangles = Triangles::of(terrain.dem());
+    let layers = terrain.overlays().layers();
+    (0..=STEPS).map(|step| time_s * f64::from(step) / f64::from(STEPS)).find_map(|at_s| {
+        let at = place(at_s).xy();
+        let holds = layers.iter().filter(|layer| layer.rule().on_flight).all(|layer| layer.holds_at(at));
+        let is_known = triangles.at(at, triangles.nominal()).is_some();
+        (!holds || !is_known).then_some(StanceFault::Map { time_s: at_s })
+    })
+}
+
+/// Whether a foot stands where the map of a DEM allows it, with no more friction than its raster has.
+fn is_allowed(ground: &StanceGround, foot: &Foothold) -> bool {
+    let Some(map) = ground.map() else { return true };
+    let (overlays, at) = (map.terrain().overlays(), foot.point_m.xy());
+    let is_out = overlays.zones().any(|zones| zones.keeps_out(at));
+    let holds = overlays.layers().iter().filter(|layer| layer.rule().on_contact).all(|layer| layer.holds_at(at));
+    let friction = overlays.friction_at(at).is_none_or(|most| foot.friction.coefficient() <= most.coefficient());
+    !is_out && holds && friction
 }
 
 /// Whether a foot is within reach of its limb, on the mesh, and on the side of the ground that its hip faces.
@@ -148,43 +190,8 @@ fn stands(ground: &StanceGround, stance: &Stance, foot: &Foothold) -> bool {
     let [a, b, c] = tree.corners(foot.facet);
     let facet = (b - a).cross(&(c - a));
     let hip = stance.pose().root_m + stance.pose().turn * limb.hip_m.coords;
-    reaches && is_on && facet.dot(&(hip - foot.point_m)) > 0.0 && foot.normal.dot(&facet) > 0.0
-}
-
-/// What is left of a direction when each foot in turn takes what it can of the rest.
-///
-/// Block descent on `|v - sum f_i|^2`: each step projects onto one cone, exactly, and the sum converges to the point of K nearest to v.
-fn left_of(direction: Vector3<f64>, feet: &[Foothold]) -> f64 {
-    let mut forces = vec![Vector3::zeros(); feet.len()];
-    let mut rest = direction;
-    for _ in 0..ROUNDS {
-        if rest.norm() <= 0.5 * LEFT {
-            break;
-        }
-        for (force, foot) in forces.iter_mut().zip(feet) {
-            let wanted = rest + *force;
-            let taken = onto_cone(wanted, foot);
-            rest = wanted - taken;
-            *force = taken;
-        }
-    }
-    rest.norm()
-}
-
-/// The point of a friction cone nearest to a force.
-fn onto_cone(force: Vector3<f64>, foot: &Foothold) -> Vector3<f64> {
-    let mu = foot.friction.coefficient();
-    let along = force.dot(&foot.normal);
-    let across = force - foot.normal * along;
-    let side = across.norm();
-    if side <= mu * along {
-        return force;
-    }
-    if mu * side <= -along {
-        return Vector3::zeros();
-    }
-    let push = (along + mu * side) / (1.0 + mu * mu);
-    foot.normal * push + across * (mu * push / side)
+    let is_faced = facet.dot(&(hip - foot.point_m)) > 0.0 && foot.normal.dot(&facet) > 0.0;
+    reaches && is_on && is_faced && is_allowed(ground, foot)
 }
 
 /// The first step at which a box of the trunk meets the ground.
@@ -245,13 +252,16 @@ impl fmt::Display for StanceViolation {
                 write!(f, "its {} is {away_m} m away from the root of its stance", end(*contact))
             }
             StanceFault::Foot { contact, limb } => {
-                write!(f, "at {}, {limb} does not stand: out of reach, off the ground, or on its inside", end(*contact))
+                write!(f, "at {}, {limb} does not stand: out of reach, off the ground, on its inside, or kept out", end(*contact))
             }
             StanceFault::Direction { contact, left } => {
                 write!(f, "the feet do not push in the direction of its {}, {left:.2e} of it is left", end(*contact))
             }
             StanceFault::Speed { contact, speed_m_s } => {
                 write!(f, "its {} speed of {speed_m_s} m/s is above the limit", end(*contact))
+            }
+            StanceFault::Map { time_s } => {
+                write!(f, "it flies over ground that is not known, or where a layer does not hold, after {time_s:.3} s")
             }
             StanceFault::Trunk { time_s, part, facet } => {
                 write!(f, "box {part} of the trunk meets facet {} after {time_s:.3} s", facet.index() + 1)

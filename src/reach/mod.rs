@@ -3,5 +3,6 @@
 pub mod contacts;
 mod fan;
 pub mod map;
+pub mod stances;
 
 pub use fan::{FanError, FanRay, FanRequest, FanSize, HopBand, SliceEnd, fan, fan_size, heading_vector};

@@ -49,6 +49,8 @@ pub enum DocumentKind {
     Require,
     /// Hops by one or two varied keys: [`TradeAnswer`](super::TradeAnswer).
     Trade,
+    /// Robots with legs and kinds of cones side by side: [`LegsTradeAnswer`](super::LegsTradeAnswer).
+    TradeLegs,
     /// Several scenarios side by side: [`CompareAnswer`](super::CompareAnswer).
     Compare,
     /// Slices in all directions: [`FanAnswer`](super::FanAnswer).
@@ -57,6 +59,8 @@ pub enum DocumentKind {
     Map,
     /// Hops to contacts all over a mesh: [`MeshMapAnswer`](super::MeshMapAnswer).
     MapMesh,
+    /// Stances all over a map: [`LegsMapAnswer`](super::LegsMapAnswer).
+    MapLegs,
     /// Missions to all nodes of a map, of a scenario that drives: [`TravelMapAnswer`](super::TravelMapAnswer).
     MapTravel,
     /// Landing sites ranked: [`SitesAnswer`](super::SitesAnswer).
@@ -71,7 +75,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 29] = [
+    pub const ALL: [Self; 31] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -92,10 +96,12 @@ impl DocumentKind {
         Self::SimulateExperiment,
         Self::Require,
         Self::Trade,
+        Self::TradeLegs,
         Self::Compare,
         Self::Fan,
         Self::Map,
         Self::MapMesh,
+        Self::MapLegs,
         Self::MapTravel,
         Self::Sites,
         Self::Size,
@@ -126,10 +132,12 @@ impl DocumentKind {
             Self::SimulateExperiment => "simulate-experiment",
             Self::Require => "require",
             Self::Trade => "trade",
+            Self::TradeLegs => "trade-legs",
             Self::Compare => "compare",
             Self::Fan => "fan",
             Self::Map => "map",
             Self::MapMesh => "map-mesh",
+            Self::MapLegs => "map-legs",
             Self::MapTravel => "map-travel",
             Self::Sites => "sites",
             Self::Size => "size",

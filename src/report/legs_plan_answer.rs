@@ -7,6 +7,7 @@ use super::{FootRecord, MeshPlanAnswer, PoseRecord, mesh_plan_text, text::Sheet}
 use crate::{
     ground::{LimbOutcome, Stance, StanceGround},
     planner::RefusedStances,
+    quantity::format_number,
 };
 
 /// The answer of `chta plan` for a robot with legs.
@@ -19,6 +20,8 @@ pub struct LegsPlanAnswer {
     pub cone: String,
     /// Which way is up for its trunk: `normal` or `vertical`.
     pub up: String,
+    /// The ground that it stands on.
+    pub ground: LegsGroundRecord,
     /// Poses that were drawn and gave no stance.
     pub refused_poses: RefusedPosesRecord,
     /// The path between stances, whose hops are those of the root of the robot; contacts of the roadmap are stances.
@@ -26,6 +29,46 @@ pub struct LegsPlanAnswer {
     pub plan: MeshPlanAnswer,
     /// The stances of the path, from start to goal; without a path those two.
     pub stances: Vec<StanceRecord>,
+}
+
+/// The ground that a robot with legs stands on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LegsGroundRecord {
+    /// `mesh`, or `dem`: the facets between its posts.
+    pub kind: LegsGroundKind,
+    /// How many facets.
+    pub facets: usize,
+    /// Of a DEM: the distance of its posts, the greater of those to the east and to the north, m; absent otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub post_spacing_m: Option<f64>,
+    /// Of a DEM: posts without elevation, around which is no ground and over which no hop flies; absent otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_data_posts: Option<usize>,
+}
+
+/// What kind of ground a robot with legs stands on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum LegsGroundKind {
+    /// A triangulated surface.
+    Mesh,
+    /// The facets between the posts of an elevation raster.
+    Dem,
+}
+
+impl LegsGroundRecord {
+    /// The ground, for a line of text.
+    pub fn sentence(&self) -> String {
+        let facets = self.facets;
+        match (self.kind, self.post_spacing_m, self.no_data_posts) {
+            (LegsGroundKind::Mesh, ..) => format!("ground: {facets} facets of a mesh"),
+            (LegsGroundKind::Dem, spacing_m, gaps) => format!(
+                "ground: {facets} facets between the posts of a DEM, {} m apart; {} posts without elevation are no ground",
+                format_number(spacing_m.unwrap_or(f64::NAN)),
+                gaps.unwrap_or(0)
+            ),
+        }
+    }
 }
 
 /// Poses that gave no stance, by the reason.
@@ -77,6 +120,7 @@ impl StanceRecord {
 pub fn legs_plan_text(answer: &LegsPlanAnswer) -> String {
     let mut sheet = Sheet::default();
     sheet.line(format_args!("{}: cone of its feet {}, up {}", answer.robot, answer.cone, answer.up));
+    sheet.line(format_args!("{}", answer.ground.sentence()));
     let RefusedPosesRecord { trunk, too_few_contacts, cone } = answer.refused_poses;
     sheet.line(format_args!(
         "poses without a stance: {trunk} by the trunk, {too_few_contacts} by too few contacts, {cone} by the cone"

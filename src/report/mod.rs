@@ -12,8 +12,10 @@ mod geojson;
 mod hop_answer;
 mod hop_margins;
 pub mod landings;
+mod legs_map_answer;
 mod legs_plan_answer;
 mod legs_simulate_answer;
+mod legs_trade_answer;
 mod limit_counts;
 mod limit_pair;
 mod map_answer;
@@ -65,8 +67,10 @@ pub use hop_answer::{
     WindowRecord,
 };
 pub use hop_margins::HopMarginsRecord;
-pub use legs_plan_answer::{LegsPlanAnswer, RefusedPosesRecord, StanceRecord, legs_plan_text};
+pub use legs_map_answer::{LegsGoalRecord, LegsMapAnswer, LegsReachRecord, LimbNodesRecord};
+pub use legs_plan_answer::{LegsGroundKind, LegsGroundRecord, LegsPlanAnswer, RefusedPosesRecord, StanceRecord, legs_plan_text};
 pub use legs_simulate_answer::{EndedInHopRecord, LegsOutcomeRecord, LegsSimulateAnswer, LegsTrialsRecord, legs_simulate_text};
+pub use legs_trade_answer::{LegsTradeAnswer, LegsTradeRow};
 pub use limit_counts::LimitCounts;
 pub use limit_pair::LimitPair;
 pub use map_answer::{

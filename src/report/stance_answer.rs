@@ -75,7 +75,7 @@ pub struct PoseRecord {
 pub struct FootRecord {
     /// The name of the limb; null for contacts alone.
     pub limb: Option<String>,
-    /// What became of it: `stands`, `no_ground`, `ground_faces_away`, `ground_hidden`, `kept_out` or `same_place`.
+    /// What became of it: `stands`, `no_ground`, `ground_faces_away`, `ground_hidden`, `kept_out`, `same_place` or `no_friction`.
     pub outcome: LimbOutcome,
     /// Where it stands, [x, y, z], m; null if it does not, and where it is not stated.
     pub position_m: Option<[f64; 3]>,

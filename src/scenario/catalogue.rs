@@ -212,7 +212,7 @@ const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 127] = [
+pub const CATALOGUE: [Key; 128] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -312,6 +312,12 @@ pub const CATALOGUE: [Key; 127] = [
         "up",
         Kind::Word(&UPS),
         "of a robot with legs: up for its trunk where it stands: normal, along that of the ground; vertical; absent: normal",
+    ),
+    key(
+        "robot",
+        "headings",
+        Kind::Count { min: 1, max: 360 },
+        "of a map of a robot with legs: headings of its trunk at every node, evenly all around; absent: 8",
     ),
     key("surface", "friction_coefficient", Kind::Number { min: 0.0, max: 1e6 }, "cone about the surface normal"),
     key("surface", "takeoff_from_slope_deg", Kind::AngleRange, "take-off angles above the slope, degrees, instead of friction"),

@@ -18,6 +18,7 @@ fn legs(keys: &LegsKeys, named: &dyn Fn(&std::path::Path) -> String) -> Value {
     object([
         ("file", keys.file.as_deref().map(|path| named(path).into())),
         ("cone", (keys.cone != ConeKind::default()).then(|| keys.cone.name().into())),
+        ("headings", keys.headings.map(Value::from)),
         ("up", (keys.up != StandsUp::default()).then(|| keys.up.name().into())),
     ])
 }

@@ -353,6 +353,12 @@ impl Entries {
         self.text("terrain", "mesh").is_some() && self.text("terrain", "route") == Some(super::Route::Free.name())
     }
 
+    /// Whether the keys ask for a free route of a robot with legs over a DEM.
+    pub fn ask_for_legs_on_dem(&self) -> bool {
+        let route = self.text("terrain", "route") == Some(super::Route::Free.name());
+        route && self.text("terrain", "dem").is_some() && self.text("robot", "file").is_some()
+    }
+
     /// Groups of faces; none if they were not given.
     pub(super) fn face_groups(&self, table: &str, name: &str) -> FaceGroups {
         self.value(table, name).and_then(face_groups).unwrap_or_default()

@@ -14,6 +14,8 @@ pub struct LegsKeys {
     pub cone: ConeKind,
     /// Which way is up for its trunk.
     pub up: StandsUp,
+    /// Headings of its trunk at every node of a map, if the scenario gives their number.
+    pub headings: Option<u32>,
 }
 
 /// The keys, of which those beside the file need it.
@@ -21,10 +23,11 @@ pub(super) fn legs(entries: &mut Entries) -> LegsKeys {
     let keys = LegsKeys {
         file: entries.text("robot", "file").map(PathBuf::from),
         cone: find(&ConeKind::ALL, ConeKind::name, entries.text("robot", "cone")).unwrap_or_default(),
+        headings: entries.count("robot", "headings").and_then(|count| u32::try_from(count).ok()),
         up: find(&StandsUp::ALL, StandsUp::name, entries.text("robot", "up")).unwrap_or_default(),
     };
     if keys.file.is_none() {
-        for name in ["cone", "up"] {
+        for name in ["cone", "up", "headings"] {
             if entries.value("robot", name).is_some() {
                 let message = format!("robot.{name} is for robots with legs, and this scenario names none");
                 let help = "add robot.file = \"robot.toml\", or remove the key";

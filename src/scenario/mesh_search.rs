@@ -46,16 +46,16 @@ impl MeshSearch {
     }
 }
 
-/// The keys, all of which only a free route over a mesh has.
+/// The keys, all of which only a free route over a mesh has, or of a robot with legs over a DEM.
 pub(super) fn mesh_search(entries: &mut Entries, terrain: Option<&TerrainSource>) -> MeshSearch {
     if !matches!(terrain, Some(TerrainSource::MeshInSpace { .. })) {
         // Of a mesh whose ends are wrong, that is the problem; a scenario without terrain may be laid over one.
-        if terrain.is_some() && !entries.ask_for_free_mesh() {
+        if terrain.is_some() && !entries.ask_for_free_mesh() && !entries.ask_for_legs_on_dem() {
             for name in ["planner", "contacts_max", "stand_off_m", "bounds_m", "seed", "time_max_s"] {
                 if entries.value("search", name).is_some() {
                     let message =
                         format!("search.{name} is for free routes over a mesh, and the terrain of this scenario is another one");
-                    let help = "remove it, or give terrain.mesh = \"file.obj\" with route = \"free\"";
+                    let help = "remove it, or give terrain.mesh = \"file.obj\", or robot.file, with route = \"free\"";
                     entries.problem(("search", name), ProblemKind::Misplaced, message, help);
                 }
             }

@@ -1,10 +1,10 @@
-//! A free route of a robot with legs over a mesh, from stance to stance.
+//! A free route of a robot with legs over a mesh or a DEM, from stance to stance.
 
 use std::path::{Path, PathBuf};
 
 use super::{
-    MeshRouteError,
-    mesh_ends::{MeshEnds, mesh_ends},
+    MeshRouteError, PipelineError,
+    legs_ends::{LegsEnds, POSTS_MAX, legs_ends, planned_map},
     mesh_route::{answer, left_out},
     stance::{best_stance, with_robot},
 };
@@ -13,21 +13,23 @@ use super::{captions::title, conditions};
 #[cfg(feature = "plot")]
 use crate::figure::{Caption, FigureError, MeshRouteFigure, MeshRouteLine, Picture, SeenFrom, draw_mesh_route};
 use crate::{
-    ground::{NoFriction, Stance, StanceGround},
+    ground::{NoFriction, Stance, StanceGround, StanceMap},
     path::{HopPath, StanceViolation, flown_by_stances, path_over_stances},
     planner::{
         LabelCap, StanceSampler,
         roadmap::{ContactSampler, GrownRoadmap, RoadmapPlanner, RoadmapQuestion, grow_roadmap, grow_until_joined},
     },
     progress::{Cancelled, Progress},
-    report::{LegsPlanAnswer, StanceRecord},
-    scenario::{RobotFileError, Scenario, read_robot},
+    quantity::{MapPoint, format_number},
+    report::{CrsRecord, LegsPlanAnswer, StanceRecord},
+    scenario::{RobotFileError, Scenario, TerrainSource, read_robot},
+    terrain::{MapBounds, OverlaidDem, TerrainError},
 };
 
 /// What is asked.
 #[derive(Clone, Copy, Debug)]
 pub struct LegsRouteQuestion<'a> {
-    /// The scenario, with a mesh as it stands and a robot file.
+    /// The scenario, with a robot file and a free route over a mesh or a DEM.
     pub scenario: &'a Scenario,
     /// The folder that its paths start from.
     pub base: &'a Path,
@@ -40,6 +42,49 @@ pub enum LegsRouteError {
     /// The mesh, its keys, or an end that gives no contact.
     #[error(transparent)]
     Mesh(#[from] MeshRouteError),
+    /// A DEM, or what the scenario says of its body.
+    #[error(transparent)]
+    Pipeline(#[from] Box<PipelineError>),
+    /// A DEM, its map or its overlays.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
+    /// An end off the map.
+    #[error("the {end} at ({}, {}) m is off the map, which spans {bounds}", format_number(at.x), format_number(at.y))]
+    OffTheMap {
+        /// Start or goal.
+        end: &'static str,
+        /// Where, m.
+        at: MapPoint,
+        /// The map.
+        bounds: MapBounds,
+    },
+    /// An end without an elevation.
+    #[error(
+        "the {end} at ({}, {}) m has no elevation, expected a place whose ground is known: no-data is no ground; choose another place, or a DEM without          the gap",
+        format_number(at.x), format_number(at.y)
+    )]
+    NoElevation {
+        /// Start or goal.
+        end: &'static str,
+        /// Where, m.
+        at: MapPoint,
+    },
+    /// More posts than are taken as a mesh.
+    #[error(
+        "found {posts} posts, expected at most {POSTS_MAX} for a robot with legs, which stands on the facets between them: give search.bounds_m =          [[x, y, z], [x, y, z]] about start and goal, or a part of the DEM (gdal_translate -projwin)"
+    )]
+    TooManyPosts {
+        /// The posts.
+        posts: usize,
+    },
+    /// A point without trunk and legs on a DEM with overlays.
+    #[error(
+        "the robot is a point without a trunk, and the scenario lays zones, layers or friction over its map, expected legs: remove robot.file, for a          hopper that obeys them"
+    )]
+    PointOnOverlays,
+    /// A point without trunk and legs.
+    #[error("the robot is a point without a trunk, expected legs whose stances are compared: remove robot.file")]
+    Point,
     /// The robot file.
     #[error(transparent)]
     Robot(#[from] RobotFileError),
@@ -50,7 +95,7 @@ pub enum LegsRouteError {
     #[error(
         "the robot cannot stand at the {end}, over ({}, {}, {}) m of the surface, in any of {tried} poses: {refusal}; choose another place, or \
          a robot that fits there",
-        at_m[0], at_m[1], at_m[2]
+        format_number(at_m[0]), format_number(at_m[1]), format_number(at_m[2])
     )]
     NoStance {
         /// Start or goal.
@@ -73,6 +118,12 @@ pub enum LegsRouteError {
     },
 }
 
+impl From<PipelineError> for LegsRouteError {
+    fn from(error: PipelineError) -> Self {
+        Self::Pipeline(Box::new(error))
+    }
+}
+
 impl From<Cancelled> for LegsRouteError {
     fn from(cancelled: Cancelled) -> Self {
         Self::Mesh(cancelled.into())
@@ -84,6 +135,10 @@ impl From<Cancelled> for LegsRouteError {
 pub struct LegsRouted {
     /// The ground under the limits that planning may use, with the robot.
     pub ground: StanceGround,
+    /// The DEM with its overlays, of which the whole friction counts; `None` over a mesh.
+    pub(super) map: Option<OverlaidDem>,
+    /// The reference system of the map, if it is known.
+    pub crs: Option<CrsRecord>,
     /// The roadmap and its best path.
     pub grown: GrownRoadmap<Stance>,
     /// The path of the root with all its numbers.
@@ -96,7 +151,7 @@ pub struct LegsRouted {
     pub robot_files: Vec<PathBuf>,
 }
 
-/// Plans the best path of a robot with legs over a mesh by the objective of a scenario, within its budgets, for exact commands.
+/// Plans the best path of a robot with legs over a mesh or a DEM by the objective of a scenario, within its budgets, for exact commands.
 ///
 /// # Errors
 /// [`LegsRouteError`].
@@ -106,9 +161,14 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
     let read = read_robot(&file)?;
     let with_limits = Scenario { hopper: with_robot(&scenario.hopper, &read.robot), ..scenario.clone() };
     let scenario = &with_limits;
-    let MeshEnds { ground, scale, given_m, surface, mut warnings, .. } = mesh_ends(scenario, base, 0.0)?;
+    let LegsEnds { ground, map, crs, scale, given_m, surface, record, mut warnings } = legs_ends(scenario, base, &read.robot)?;
     warnings.extend(read.warnings);
     let ground = StanceGround::new(ground, read.robot, scenario.legs.cone, scenario.legs.up)?;
+    let ground = match &map {
+        Some(map) if ground.is_point() && !map.overlays().are_none() => return Err(LegsRouteError::PointOnOverlays),
+        Some(map) => ground.with_map(StanceMap::new(planned_map(map, scenario))),
+        None => ground,
+    };
     let stance = |at: usize, end| {
         let found = best_stance(&ground, &surface[at], (None, None));
         found.best.map(|(stance, _)| stance).ok_or_else(|| LegsRouteError::NoStance {
@@ -165,12 +225,13 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
         robot: ground.robot().name().to_owned(),
         cone: ground.cone_kind().name().to_owned(),
         up: ground.stands_up().name().to_owned(),
+        ground: record,
         refused_poses: refused.into(),
         plan,
         stances: stances.iter().map(|stance| StanceRecord::new(&ground, stance)).collect(),
     };
     let robot_files = std::iter::once(file).chain(read.files).collect();
-    Ok(LegsRouted { ground, grown, path, answer, warnings, robot_files })
+    Ok(LegsRouted { ground, map, crs, grown, path, answer, warnings, robot_files })
 }
 
 #[cfg(feature = "plot")]
@@ -215,13 +276,17 @@ fn without_effect(scenario: &Scenario) -> Option<String> {
         ("search.stand_off_m", scenario.mesh_search.stand_off_m.is_some()),
         ("hopper.radius_m", limits.radius_m.is_some_and(|radius_m| radius_m > 0.0)),
         ("hopper.landing", limits.landing.brakes()),
+        (
+            "search.node_spacing_max_m",
+            scenario.search.spacing.is_some() && matches!(scenario.terrain, Some(TerrainSource::Dem { .. })),
+        ),
     ];
     let given: Vec<&str> = keys.iter().filter(|(_, is_given)| *is_given).map(|(key, _)| *key).collect();
     (!given.is_empty()).then(|| format!("{}: without effect on the trunk and the feet of a robot with legs", given.join(", ")))
 }
 
 /// What a plan of a robot with legs assumes.
-fn assumptions(ground: &StanceGround) -> Vec<String> {
+pub(super) fn assumptions(ground: &StanceGround) -> Vec<String> {
     if ground.is_point() {
         return Vec::new();
     }

@@ -2,7 +2,7 @@
 
 use super::{LegsRouted, SimulateOptions, stance::with_robot};
 use crate::{
-    ground::{NoFriction, StanceGround},
+    ground::{NoFriction, StanceGround, StanceMap},
     progress::Progress,
     report::{LegsSimulateAnswer, LegsTrialsRecord, SuccessRequirement},
     scenario::Scenario,
@@ -82,6 +82,10 @@ fn mission(routed: &LegsRouted, scenario: &Scenario) -> Result<Option<LegsMissio
     let mesh = planning.mesh().under(&hopper, scenario.body.gravity, &scenario.surface)?;
     let whole =
         StanceGround::new(mesh, planning.robot().clone(), crate::ballistics::stance::ConeKind::Exact, planning.stands_up())?;
+    let whole = match &routed.map {
+        Some(map) => whole.with_map(StanceMap::new(map.clone())),
+        None => whole,
+    };
     let roadmap = &routed.grown.roadmap;
     let hops = roadmap.hops_to(routed.grown.ends.1).into_iter().enumerate();
     let mut aims: Vec<_> = hops.filter_map(|(node, hops)| Some((roadmap.contact(node).clone(), hops?))).collect();

@@ -59,7 +59,7 @@ pub(super) fn mesh_ends(scenario: &Scenario, base: &Path, stand_off_m: f64) -> R
 }
 
 /// A contact, if it lies within the bounds.
-fn within(bounds: Option<SpaceBounds>, end: &'static str, contact: MeshContact) -> Result<MeshContact, MeshRouteError> {
+pub(super) fn within(bounds: Option<SpaceBounds>, end: &'static str, contact: MeshContact) -> Result<MeshContact, MeshRouteError> {
     match bounds {
         Some(bounds) if !bounds.contain(&contact.point_m()) => {
             Err(MeshRouteError::OutsideBounds { end, point_m: contact.point_m(), bounds })

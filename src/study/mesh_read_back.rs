@@ -5,7 +5,8 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::{
-    MeshRouteError, ReadBackError,
+    LegsRouteError, MeshRouteError, ReadBackError,
+    legs_read_back::check_over_stances,
     mesh_ends::{MeshEnds, mesh_ends},
     read_back::{commanded, key, same_inputs},
 };
@@ -27,6 +28,9 @@ pub enum MeshReadBackError {
     /// The mesh, or its ends.
     #[error(transparent)]
     Mesh(#[from] MeshRouteError),
+    /// The robot with legs, its ground, or its ends.
+    #[error(transparent)]
+    Legs(#[from] LegsRouteError),
     /// The result.
     #[error(transparent)]
     Result(#[from] ReadBackError),
@@ -52,8 +56,8 @@ pub struct MeshChecked {
     pub warnings: Vec<String>,
 }
 
-/// Flies the path of a result over the mesh of its scenario again by direct simulation, and names every limit that it breaks. Nothing is
-/// searched.
+/// Flies the path of a result over the mesh of its scenario again by direct simulation, and names every limit that it breaks; of a robot with legs
+/// from stance to stance, over a mesh or a DEM. Nothing is searched.
 ///
 /// `document`: a result of a plan, a run or trials over a mesh; `inputs`: the files of the scenario with their checksums, which have to be
 /// those of the result.
@@ -65,7 +69,10 @@ pub fn check_over_mesh(
     document: &Value,
     inputs: &[InputFile],
 ) -> Result<MeshChecked, MeshReadBackError> {
-    let rows = rows_of(document, inputs)?;
+    if scenario.legs.file.is_some() {
+        return check_over_stances((scenario, base), document, inputs);
+    }
+    let rows = rows_of(document, inputs, &WITH_PATH)?;
     let MeshEnds { ground, scale, given_m, surface, stood, stand_off_m, mut warnings } =
         mesh_ends(scenario, base, scenario.mesh_search.contacts_stand_off_m())?;
     let hops = rows.iter().map(hop_of).collect::<Result<_, _>>()?;
@@ -94,7 +101,7 @@ impl MeshResultPath {
     /// # Errors
     /// [`MeshReadBackError`]: other input files, or a result without a path.
     pub fn read(document: &Value, inputs: &[InputFile]) -> Result<Self, MeshReadBackError> {
-        rows_of(document, inputs).map(Self)
+        rows_of(document, inputs, &WITH_PATH).map(Self)
     }
 
     /// Checks that a plan has this path.
@@ -120,9 +127,13 @@ fn commands(row: &HopRecord) -> [f64; 8] {
 }
 
 /// The hops of a result, whose input files have to be those that are read.
-fn rows_of(document: &Value, inputs: &[InputFile]) -> Result<Vec<HopRecord>, MeshReadBackError> {
+pub(super) fn rows_of(
+    document: &Value,
+    inputs: &[InputFile],
+    with_path: &[DocumentKind],
+) -> Result<Vec<HopRecord>, MeshReadBackError> {
     let schema = document["schema"].as_str().unwrap_or("no schema").to_owned();
-    if !DocumentKind::of_schema(&schema).is_some_and(|kind| WITH_PATH.contains(&kind)) {
+    if !DocumentKind::of_schema(&schema).is_some_and(|kind| with_path.contains(&kind)) {
         return Err(ReadBackError::NoPath { found: schema }.into());
     }
     same_inputs(&key::<Vec<InputFile>>(document, "inputs")?, inputs)?;
@@ -135,7 +146,7 @@ fn rows_of(document: &Value, inputs: &[InputFile]) -> Result<Vec<HopRecord>, Mes
 }
 
 /// A hop from contact to contact, as the result states it.
-fn hop_of(row: &HopRecord) -> Result<Hop, ReadBackError> {
+pub(super) fn hop_of(row: &HopRecord) -> Result<Hop, ReadBackError> {
     let map = row.map.as_ref().ok_or(ReadBackError::NoPlaces { hop: row.hop })?;
     let takeoff_at = MapPoint::new(map.takeoff_map_x_m, map.takeoff_map_y_m);
     let landing_at = MapPoint::new(map.landing_map_x_m, map.landing_map_y_m);

@@ -463,10 +463,14 @@ impl Overlays {
         Ok(Self { constant: friction(scenario), overlays: Arc::new(overlays) })
     }
 
+    /// A whole DEM under these overlays.
+    pub(super) fn laid_over(&self, dem: impl Into<Arc<Dem>>) -> OverlaidDem {
+        OverlaidDem::new(dem, Arc::clone(&self.overlays))
+    }
+
     /// The ground of a whole DEM under these overlays, for a scenario's hopper, gravity and surface.
     pub fn ground(&self, dem: impl Into<Arc<Dem>>, scenario: &Scenario) -> DemGround {
-        let terrain = OverlaidDem::new(dem, Arc::clone(&self.overlays));
-        DemGround::new(terrain, &scenario.hopper, scenario.body.gravity, &scenario.surface)
+        DemGround::new(self.laid_over(dem), &scenario.hopper, scenario.body.gravity, &scenario.surface)
     }
 
     /// The same under the limits that planning may use.

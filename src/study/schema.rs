@@ -6,10 +6,10 @@ use serde_json::{Value, json};
 use crate::{
     arena::ArenaKeys,
     report::{
-        ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, LegsPlanAnswer,
-        LegsSimulateAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer,
-        PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer, SizeAnswer, StanceAnswer, TargetsAnswer,
-        TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+        ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, LegsMapAnswer,
+        LegsPlanAnswer, LegsSimulateAnswer, LegsTradeAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer,
+        MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer, SizeAnswer,
+        StanceAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
     },
     scenario::{robot_schema, scenario_schema},
 };
@@ -72,10 +72,12 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::SimulateExperiment => derived::<ExperimentAnswer>(),
         DocumentKind::Require => derived::<RequireAnswer>(),
         DocumentKind::Trade => derived::<TradeAnswer>(),
+        DocumentKind::TradeLegs => derived::<LegsTradeAnswer>(),
         DocumentKind::Compare => derived::<CompareAnswer>(),
         DocumentKind::Fan => derived::<FanAnswer>(),
         DocumentKind::Map => derived::<MapAnswer>(),
         DocumentKind::MapMesh => derived::<MeshMapAnswer>(),
+        DocumentKind::MapLegs => derived::<LegsMapAnswer>(),
         DocumentKind::MapTravel => derived::<TravelMapAnswer>(),
         DocumentKind::Sites => derived::<SitesAnswer>(),
         DocumentKind::Size => derived::<SizeAnswer>(),

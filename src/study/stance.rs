@@ -3,15 +3,21 @@
 use std::{
     fs,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use nalgebra::{Point3, Vector3};
 
-use super::{Extent, TooLarge, mesh_flaws::flaw_warnings, mesh_hop::on_mesh, physics::check_extent};
+use super::{
+    Extent, Overlays, TooLarge,
+    mesh_flaws::flaw_warnings,
+    mesh_hop::{check_keys, on_mesh},
+    physics::check_extent,
+};
 use crate::{
     ballistics::stance::{ConeKind, ContactCone},
     chain::ConstraintProblem,
-    ground::{MeshContact, MeshGround, NoFriction, NoStance, Stance, StanceGround, StandsUp},
+    ground::{MeshContact, MeshGround, NoFriction, NoStance, Stance, StanceGround, StanceMap, StandsUp},
     quantity::MapPoint,
     report::{StanceAnswer, TriedPoses, heading_of},
     scenario::Scenario,
@@ -27,14 +33,16 @@ pub enum StanceTerrain {
     /// A mesh, by its file and metres per unit.
     Mesh(PathBuf, f64),
     /// An elevation raster.
-    Dem(Box<Dem>),
+    Dem(Arc<Dem>),
 }
 
 /// What is asked.
 #[derive(Clone, Debug)]
 pub struct StanceQuestion<'a> {
-    /// The scenario: gravity, friction and, where it has them, the limits of the machine.
+    /// The scenario: gravity, friction and, where it has them, the limits of the machine and what lies over the map of a DEM.
     pub scenario: &'a Scenario,
+    /// The folder that its paths start from.
+    pub base: &'a Path,
     /// The terrain.
     pub terrain: &'a StanceTerrain,
     /// The robot.
@@ -103,9 +111,6 @@ pub struct Stood {
 /// Headings tried where none is given.
 const HEADINGS: u32 = 36;
 
-/// Heights tried where none is given, as shares of the range, the middle ones first.
-const HEIGHTS: [f64; 11] = [0.7, 0.6, 0.8, 0.5, 0.9, 0.4, 0.95, 0.3, 0.2, 0.1, 1.0];
-
 /// A foothold whose facets are this far from its mean normal is on a ridge or in a notch, degrees.
 const WIDE_SPREAD_DEG: f64 = 10.0;
 
@@ -133,6 +138,14 @@ pub fn stand(question: &StanceQuestion<'_>) -> Result<Stood, StanceError> {
     };
     let at = on_mesh(&ground, at, "place", &mut warnings)?;
     let ground = StanceGround::new(ground, robot.clone(), ConeKind::Exact, question.up)?;
+    let ground = match question.terrain {
+        StanceTerrain::Mesh(..) => ground,
+        StanceTerrain::Dem(dem) => {
+            let overlays = Overlays::read(scenario, question.base, Some(&dem.georeference().coordinate_system), dem.bounds())?;
+            warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
+            ground.with_map(StanceMap::new(overlays.laid_over(Arc::clone(dem))))
+        }
+    };
     let found = best_stance(&ground, &at, (question.heading_deg, question.height_m));
     let (best, refusal, tried) = (found.best, found.refusal, found.tried);
     let answer = match (&best, &refusal) {
@@ -140,6 +153,7 @@ pub fn stand(question: &StanceQuestion<'_>) -> Result<Stood, StanceError> {
         (None, Some(refusal)) => StanceAnswer::of_refusal(ground.robot().name(), refusal, tried),
         (None, None) => StanceAnswer::of_contacts(&[], *headings),
     };
+    warnings.extend(faces_down(&at, "place"));
     let spread = answer.contacts.iter().filter_map(|foot| Some((foot.limb.clone()?, foot.spread_deg?)));
     warnings.extend(spread.filter(|(_, deg)| *deg > WIDE_SPREAD_DEG).map(|(limb, deg)| {
         format!("{limb} stands on facets that differ by up to {deg:.1} deg from the normal that stands for them: a ridge or a notch within its reach")
@@ -166,8 +180,7 @@ pub(super) fn best_stance(
 ) -> BestStance {
     let normal: Vector3<f64> = at.facets().iter().map(|facet| facet.normal).sum();
     let up = ground.up_over(normal);
-    let [low_m, high_m] = ground.heights_m();
-    let all = || HEIGHTS.iter().map(|share| low_m + (high_m - low_m) * share).collect();
+    let all = || ground.standing_heights_m().to_vec();
     let heights: Vec<f64> = height_m.map_or_else(all, |height_m| vec![height_m]);
     let all_around = || (0..HEADINGS).map(|turn| 360.0 * f64::from(turn) / f64::from(HEADINGS)).collect();
     let facing: Vec<f64> = heading_deg.map_or_else(all_around, |deg| vec![deg]);
@@ -194,6 +207,17 @@ pub(super) fn best_stance(
         }
     }
     BestStance { best: best.map(|(_, stance, height_m)| (stance, height_m)), refusal, tried }
+}
+
+/// A warning where a robot would hang under a place: its facets face down.
+pub(super) fn faces_down(at: &MeshContact, place: &str) -> Option<String> {
+    let normal: Vector3<f64> = at.facets().iter().map(|facet| facet.normal).sum();
+    (normal.z < 0.0).then(|| {
+        format!(
+            "the facets at the {place} face down, by the order of their corners: the robot is under them; of a mesh that is inverted reverse the \
+             order"
+        )
+    })
 }
 
 /// Contacts without a robot, from a table: `normal_x,normal_y,normal_z,friction_coefficient`, one row a contact.
@@ -312,6 +336,7 @@ fn mesh_of(question: &StanceQuestion<'_>) -> Result<(MeshTree, Vec<String>), Sta
     let StanceQuestion { scenario, terrain, robot, at_m: (at, _), .. } = question;
     match terrain {
         StanceTerrain::Mesh(file, scale) => {
+            check_keys(scenario)?;
             let read = read_mesh_with(file, *scale, scenario.no_data)?;
             let mut warnings = read.warnings;
             warnings.extend(check_extent(&scenario.body, &Extent::of_mesh(&read.mesh.bounds()))?);

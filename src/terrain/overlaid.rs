@@ -48,6 +48,11 @@ impl Overlays {
         Self { friction: self.friction.as_ref().map(|raster| raster.with_share(share)), ..self.clone() }
     }
 
+    /// Whether nothing is laid over the terrain.
+    pub fn are_none(&self) -> bool {
+        self.friction.is_none() && self.keep_out.is_none() && self.keep_in.is_none() && self.layers.is_empty()
+    }
+
     /// The friction raster.
     pub const fn friction(&self) -> Option<&FrictionRaster> {
         self.friction.as_ref()

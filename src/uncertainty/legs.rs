@@ -24,6 +24,9 @@ const BATCH: u64 = 200;
 /// Steps of a flight to its planned end.
 const STEPS: u32 = 200;
 
+/// A direction this far outside the cone of the feet, of 1, is on its edge.
+const ON_THE_EDGE: f64 = 1.0e-6;
+
 /// A flight that has not come down after so many times its planned duration has left the ground.
 const LONGEST: u32 = 4;
 
@@ -296,7 +299,10 @@ impl LegsMission {
 
     /// Whether the feet of a stance do not push in a direction.
     fn is_refused(&self, stance: &Stance, push: Vector3<f64>) -> bool {
-        let inside = stance.cone().is_none_or(|cone| cone.contains(push));
+        // A planned arc may lie on the edge of its window, where rounding decides: the sum of the normals is well inside the cone.
+        let inwards: Vector3<f64> = stance.footholds().iter().map(|foot| foot.normal).sum();
+        let within = push / push.norm().max(f64::MIN_POSITIVE) + inwards * ON_THE_EDGE;
+        let inside = stance.cone().is_none_or(|cone| cone.contains(push) || cone.contains(within));
         let refused: Option<Limit> = self.whole.refuses_push(stance, push);
         !inside || refused.is_some()
     }
@@ -325,7 +331,9 @@ impl LegsMission {
                     let middle = f64::midpoint(early, late);
                     if over_m(middle).is_some_and(|over| over > 0.0) { early = middle } else { late = middle }
                 }
-                return if over_m(early).is_some() { Ok((at(early), velocity + fall * early)) } else { Err(LegsOutcome::Lost) };
+                // Where the ground ends within the step, it has not come down on it.
+                let is_on_ground = over_m(early).is_some() && over_m(late).is_some();
+                return if is_on_ground { Ok((at(early), velocity + fall * early)) } else { Err(LegsOutcome::Lost) };
             }
             was_over |= over.is_some_and(|over| over > 0.0);
             let pose = Pose { root_m: at(time_s), turn: from.turn.try_slerp(&landing.turn, share, 1e-9).unwrap_or(landing.turn) };

@@ -7,9 +7,9 @@ use std::{collections::BTreeSet, path::Path, sync::OnceLock};
 use chta::arena::ArenaKeys;
 use chta::report::{
     ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer,
-    LegsPlanAnswer, LegsSimulateAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer, MeshPlanAnswer,
-    MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer, SizeAnswer, StanceAnswer,
-    TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+    LegsMapAnswer, LegsPlanAnswer, LegsSimulateAnswer, LegsTradeAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer,
+    MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer, SizeAnswer,
+    StanceAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
 use serde::{Serialize, de::DeserializeOwned};
@@ -18,7 +18,7 @@ use crate::desk::chta;
 
 /// Commands whose answers have every part that an answer may have: found and refused, with proof, with trials, on maps with and without
 /// a projection, with propellant, with commands in steps, with risk.
-const COMMANDS: [&str; 65] = [
+const COMMANDS: [&str; 68] = [
     "plan data/drive/mars_rover.toml --alternatives",
     "plan data/drive/mars_rover.toml --set budget.mission_time_max_s=100",
     "plan data/drive/mars_rover.toml --set drive.travel=drive --set drive.slope_up_max_deg=1",
@@ -32,6 +32,9 @@ const COMMANDS: [&str; 65] = [
     "plan data/mesh_scenarios/three_legs.toml --set search.contacts_max=60",
     "plan data/mesh_scenarios/three_legs.toml --set search.contacts_max=30 --set search.seed=5 --set robot.cone=kc",
     "simulate data/mesh_scenarios/three_legs.toml --set search.contacts_max=60 --trials 20 --compare --success-min 0.1",
+    "plan data/mesh_scenarios/mars_four_legs.toml --set search.contacts_max=20",
+    "map data/mesh_scenarios/mars_four_legs.toml --stride 16 --set robot.headings=2 --hops-max 2",
+    "trade data/mesh_scenarios/three_legs.toml --set search.contacts_max=20 --vary robot.cone=kc,exact",
     "hop data/scenarios/paper_76m.toml --from 0 --to 20",
     "hop data/scenarios/paper_76m.toml --from 0 --to 25",
     "hop data/scenarios/simple.toml",
@@ -161,6 +164,7 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::PlanTravel => of::<TravelAnswer>(text),
         DocumentKind::PlanTargets => of::<TargetsAnswer>(text),
         DocumentKind::SimulateTargets => of::<TargetsSimulateAnswer>(text),
+        DocumentKind::MapLegs => of::<LegsMapAnswer>(text),
         DocumentKind::MapTravel => of::<TravelMapAnswer>(text),
         DocumentKind::SimulateTravel => of::<TravelSimulateAnswer>(text),
         DocumentKind::Simulate => of::<SimulateAnswer>(text),
@@ -168,6 +172,7 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::SimulateExperiment => of::<ExperimentAnswer>(text),
         DocumentKind::Require => of::<RequireAnswer>(text),
         DocumentKind::Trade => of::<TradeAnswer>(text),
+        DocumentKind::TradeLegs => of::<LegsTradeAnswer>(text),
         DocumentKind::Compare => of::<CompareAnswer>(text),
         DocumentKind::Fan => of::<FanAnswer>(text),
         DocumentKind::Map => of::<MapAnswer>(text),

@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 126] = [
+const TELLING: [(&str, &str); 127] = [
     ("body.name", "moon"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -42,6 +42,7 @@ const TELLING: [(&str, &str); 126] = [
     ("robot.file", "none.toml"),
     ("robot.cone", "kc"),
     ("robot.up", "vertical"),
+    ("robot.headings", "4"),
     ("surface.friction_coefficient", "0.3"),
     ("surface.rest_slope_max_deg", "1"),
     ("surface.keep_out", "none.tif"),

@@ -144,9 +144,11 @@ fn the_commands_of_the_document_run() {
     assert!(commands.len() >= 4, "{commands:?}");
     for command in commands {
         let mut words: Vec<String> = command.split_whitespace().map(str::to_owned).collect();
-        if let Some(at) = words.iter().position(|word| word == "--plot") {
-            let file = folder.path().join(&words[at + 1]);
-            words[at + 1] = file.display().to_string();
+        for option in ["--plot", "--mobility", "-o"] {
+            if let Some(at) = words.iter().position(|word| word == option) {
+                let file = folder.path().join(&words[at + 1]);
+                words[at + 1] = file.display().to_string();
+            }
         }
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let (status, _, stderr) = chta(root(), &[&words[..], &["--quiet"]].concat());

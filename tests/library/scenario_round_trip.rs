@@ -345,7 +345,7 @@ fn every_key_reaches_the_document() {
                 with("contact", "restitution_normal", "0.25");
                 with("contact", "restitution_tangential", "0.25");
             }
-            ("robot", "cone" | "up") => with("robot", "file", "robot.toml"),
+            ("robot", "cone" | "up" | "headings") => with("robot", "file", "robot.toml"),
             ("search", "risk_extra_hops_max") => with("search", "risk", "traded"),
             _ => {}
         }

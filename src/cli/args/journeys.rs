@@ -300,8 +300,8 @@ pub(crate) struct RequireArgs {
 pub(crate) struct TradeArgs {
     #[command(flatten)]
     pub(crate) journey: JourneyArgs,
-    /// Scenario key that takes STEPS values from FROM to TO, both included; given twice: a grid [example: `--vary
-    /// hopper.takeoff_speed_max_m_s=4:10:7`]
+    /// Scenario key that takes STEPS values from FROM to TO, both included; given twice: a grid; of a robot with legs, robot.cone or robot.file with a
+    /// list [example: `--vary hopper.takeoff_speed_max_m_s=4:10:7`]
     #[arg(long, value_name = "TABLE.KEY=FROM:TO:STEPS", required = true)]
     pub(crate) vary: Vec<String>,
     /// Rows to write, as .csv or .json by the file's extension; -: CSV to standard output, in place of the answer

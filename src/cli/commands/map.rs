@@ -5,7 +5,7 @@ use chta::{
     study::map::PreparedMap,
 };
 
-use super::{map_over_mesh, map_travel};
+use super::{map_legs, map_over_mesh};
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs},
@@ -33,8 +33,8 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     }
     args.view.without_mesh()?;
     let input = MapInput::of(args)?;
-    if input.bare.scenario.drives().is_some() {
-        return map_travel::run(args, &input);
+    if let Some(answer) = map_legs::of_legs_or_wheels(args, &input) {
+        return answer;
     }
     let question = input.question(args);
     let prepared = PreparedMap::new(&question).map_err(|error| input.failure(&error))?;

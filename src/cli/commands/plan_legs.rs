@@ -1,4 +1,4 @@
-//! `chta plan` of a robot with legs over a mesh.
+//! `chta plan` of a robot with legs over a mesh or a DEM.
 
 use chta::{
     report::{DocumentKind, MapKnowledge, legs_plan_text, write_path_csv},
@@ -18,6 +18,12 @@ use crate::cli::{
 /// Plans a route of a robot with legs.
 pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
     not_on_mesh::refuse_for_legs(&[
+        ("--geojson", args.geojson.is_some(), "writes the path of a point on a map"),
+        ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
+        ("--plot-front", args.plot_front.is_some(), "draws a front over a DEM or a profile"),
+        ("--prove", args.prove.prove, "bounds the hops along a profile"),
+        ("--dry-run", args.size.dry_run, "states the size of a search for a point"),
+        ("--memory-max-mib", args.size.memory_max_mib.is_some(), "limits the memory of a search for a point"),
         ("--front", args.front()?.is_some(), "searches hops against an amount for a point"),
         ("--roadmap", args.roadmap.roadmap.is_some(), "reads contacts of a point"),
         ("--roadmap-output", args.roadmap.roadmap_output.is_some(), "writes contacts of a point"),
@@ -29,7 +35,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
     output::warn_all(args.common.quiet, &routed.warnings);
     let views = Views {
         text: &|| legs_plan_text(&routed.answer),
-        json: &|| input.document(DocumentKind::PlanLegs, &routed.warnings, &routed.answer),
+        json: &|| input.document_on_map(DocumentKind::PlanLegs, routed.crs.as_ref(), &routed.warnings, &routed.answer),
         csv: &|out| write_path_csv(&routed.answer.plan.path, MapKnowledge::Metres, out),
     };
     let mut files = Files::default();

@@ -17,6 +17,9 @@ use crate::cli::{
 
 /// Plans a free route over a mesh.
 pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
+    if input.scenario.legs.file.is_some() {
+        return super::plan_legs::run(args, input);
+    }
     not_on_mesh::refuse(&[
         ("--geojson", args.geojson.is_some(), "writes a path on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
@@ -25,9 +28,6 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
         ("--dry-run", args.size.dry_run, "states the size of a search over a DEM"),
         ("--memory-max-mib", args.size.memory_max_mib.is_some(), "limits the memory of a search over a DEM"),
     ])?;
-    if input.scenario.legs.file.is_some() {
-        return super::plan_legs::run(args, input);
-    }
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let mut table = Table::begin(args.output.as_deref(), TableFormat::Csv)?;
     let roadmap_output = args.roadmap.roadmap_output.as_deref().map(Pending::begin).transpose()?;

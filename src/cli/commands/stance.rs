@@ -28,6 +28,7 @@ pub(crate) fn run(args: &StanceArgs) -> Result<Answer, Failure> {
     let input = load_stance(args)?;
     let question = StanceQuestion {
         scenario: &input.scenario,
+        base: &input.base,
         terrain: &input.terrain,
         robot: input.robot.clone(),
         at_m: input.at_m,

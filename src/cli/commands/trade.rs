@@ -10,7 +10,7 @@ use crate::cli::{
     args::TradeArgs,
     effects::Purpose,
     inputs,
-    load::load_to_vary,
+    load::{load_mesh_plan, load_to_vary},
     output,
     progress::Progress,
     threads,
@@ -21,6 +21,9 @@ use crate::cli::{
 pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
     threads::start(args.answer.threads)?;
+    if let Some(input) = load_mesh_plan(&args.journey, &args.common, &args.search, Purpose::Trade, &[])? {
+        return super::trade_legs::run(args, &input);
+    }
     let swept: Vec<_> = args.vary.iter().map(|text| SweptKey::parse(text)).collect::<Result<_, _>>()?;
     // Outputs are opened before the computation, which may take long.
     let mut table = Table::by_extension(args.output.as_deref())?;

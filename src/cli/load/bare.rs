@@ -9,7 +9,7 @@ use chta::{
 
 use super::{
     EndOptions, Source, apply_options, forget_terrain, lacking_on, look_at_keys, option_source, read_source, relative_name,
-    two_scenarios, validated,
+    two_scenarios, validated, validated_with_legs,
 };
 use crate::cli::{
     Failure,
@@ -102,10 +102,10 @@ fn of_source(
     apply_options(&mut source.entries, common, Some(search), EndOptions::NONE);
     let given = source.entries.clone();
     let (ends, dem) = if let Some(dem) = dem {
-        (own_ends(&source, purpose.scenario_ends())?, dem)
+        (own_ends(&source, purpose)?, dem)
     } else {
         look_at_keys(&mut source, false)?;
-        let ends = own_ends(&source, purpose.scenario_ends())?;
+        let ends = own_ends(&source, purpose)?;
         let own = source.entries.files().into_iter().find(|(key, _)| key.path() == "terrain.dem").map(|(_, file)| file);
         let own = own.ok_or_else(|| {
             let name = &source.name;
@@ -120,9 +120,12 @@ fn of_source(
     let title = given.title().filter(|_| title).map(str::to_owned);
     forget_terrain(&mut source.entries);
     look_at_keys(&mut source, false)?;
-    let scenario = validated(source.entries, &source.name, &source.text)?;
+    let judged = if purpose.stands_on_legs() { validated_with_legs } else { validated };
+    let scenario = judged(source.entries, &source.name, &source.text)?;
     let warnings = purpose.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
-    let lacking = scenario.lacks_on_a_dem();
+    // A robot file may state the speeds.
+    let mut lacking = scenario.lacks_on_a_dem();
+    lacking.retain(|key| scenario.legs.file.is_none() || key.key.starts_with("surface."));
     if !lacking.is_empty() {
         let name = common.scenario.as_ref().map(|file| format!("{}: ", file.display())).unwrap_or_default();
         return Err(Failure::message(name + &lacking_on(&lacking, "a DEM")));
@@ -135,12 +138,14 @@ fn of_source(
 }
 
 /// The start and goal of a scenario on its DEM, where they count.
-fn own_ends(source: &Source, wanted: ScenarioEnds) -> Result<Option<[MapPlace; 2]>, Failure> {
+fn own_ends(source: &Source, purpose: Purpose) -> Result<Option<[MapPlace; 2]>, Failure> {
+    let wanted = purpose.scenario_ends();
+    let judged = if purpose.stands_on_legs() { validated_with_legs } else { validated };
     let has_dem = source.entries.files().iter().any(|(key, _)| key.path() == "terrain.dem");
     if wanted == ScenarioEnds::Ignored || !has_dem {
         return Ok(None);
     }
-    let scenario = match validated(source.entries.clone(), &source.name, &source.text) {
+    let scenario = match judged(source.entries.clone(), &source.name, &source.text) {
         // A start or goal that the scenario lacks is not missed where the command line has a start.
         Err(_) if wanted == ScenarioEnds::Offered => return Ok(None),
         scenario => scenario?,

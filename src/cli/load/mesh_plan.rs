@@ -1,9 +1,9 @@
-//! The mesh of a free route, and the scenario for it.
+//! The terrain of a free route over facets, of a mesh or for legs of a DEM, and the scenario for it.
 
 use std::path::{Path, PathBuf};
 
 use chta::{
-    report::{DocumentKind, InputFile},
+    report::{CrsRecord, DocumentKind, InputFile},
     scenario::{Scenario, TerrainSource, scenario_document},
     study::{CaseRecord, checksums, scenario_files},
 };
@@ -24,11 +24,11 @@ use crate::cli::{
 /// The scenario of a free route over a mesh.
 #[derive(Debug)]
 pub(crate) struct MeshPlanInput {
-    /// The scenario, whose terrain is a mesh as it stands.
+    /// The scenario, whose terrain is a mesh as it stands, or for a robot with legs a DEM.
     pub(crate) scenario: Scenario,
     /// The folder that its paths start from.
     pub(crate) base: PathBuf,
-    /// The file of the mesh.
+    /// The file of the terrain.
     pub(crate) mesh: PathBuf,
     /// The head of the document.
     record: CaseRecord,
@@ -48,6 +48,18 @@ impl MeshPlanInput {
     /// An answer as one document, with its warnings.
     pub(crate) fn document<T: Serialize>(&self, kind: DocumentKind, warnings: &[String], answer: T) -> Result<String, Failure> {
         Ok(self.record.document(kind, warnings, answer).to_json()?)
+    }
+
+    /// The same on a map, whose reference system is known or not.
+    pub(crate) fn document_on_map<T: Serialize>(
+        &self,
+        kind: DocumentKind,
+        crs: Option<&CrsRecord>,
+        warnings: &[String],
+        answer: T,
+    ) -> Result<String, Failure> {
+        let record = CaseRecord { crs: crs.cloned(), ..self.record.clone() };
+        Ok(record.document(kind, warnings, answer).to_json()?)
     }
 }
 
@@ -74,8 +86,9 @@ fn mesh_source(
     }
     let mut source = read_source(&input)?;
     apply_options(&mut source.entries, common, search, ends);
-    let is_over_mesh = !source.entries.is_unreadable() && source.entries.ask_for_free_mesh();
-    Ok(is_over_mesh.then_some(source))
+    let entries = &source.entries;
+    let is_over_facets = !entries.is_unreadable() && (entries.ask_for_free_mesh() || entries.ask_for_legs_on_dem());
+    Ok(is_over_facets.then_some(source))
 }
 
 /// Whether a file is a scenario of hops over a mesh as it stands.
@@ -92,6 +105,12 @@ pub(crate) fn load_mesh_scenario(
     own: &[OwnKey<'_>],
 ) -> Result<Option<MeshPlanInput>, Failure> {
     let Some(mut source) = mesh_source(target, common, options)? else { return Ok(None) };
+    // Its nodes are those of a map over any DEM.
+    // A point has no limbs and cones to compare.
+    let is_of_legs = source.entries.files().iter().any(|(key, _)| key.path() == "robot.file");
+    if (purpose == Purpose::MapMesh && !source.entries.ask_for_free_mesh()) || (purpose == Purpose::Trade && !is_of_legs) {
+        return Ok(None);
+    }
     look_at_keys(&mut source, true)?;
     for (option, table, key, value) in own {
         source.entries.set_by_option(option, table, key, value.clone());
@@ -101,13 +120,16 @@ pub(crate) fn load_mesh_scenario(
     let validated = if purpose.stands_on_legs() { validated_with_legs } else { validated };
     let scenario = validated(source.entries, &name, &source.text)?;
     // Two terrains would have been refused.
-    let Some(TerrainSource::MeshInSpace { path, .. }) = &scenario.terrain else { return Ok(None) };
+    let Some(TerrainSource::MeshInSpace { path, .. } | TerrainSource::Dem { path, .. }) = &scenario.terrain else {
+        return Ok(None);
+    };
+    let terrain = if matches!(scenario.terrain, Some(TerrainSource::Dem { .. })) { "a DEM" } else { "a mesh" };
     let mesh = base.join(path);
     // A robot file may state the speeds.
     let mut lacking = scenario.lacks_on_a_dem();
     lacking.retain(|key| scenario.legs.file.is_none() || key.key.starts_with("surface."));
     if !lacking.is_empty() {
-        return Err(Failure::message(format!("{name}: {}", lacking_on(&lacking, "a mesh"))));
+        return Err(Failure::message(format!("{name}: {}", lacking_on(&lacking, terrain))));
     }
     let warnings: Vec<String> = purpose.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
     output::warn_all(common.quiet, &warnings);

@@ -429,6 +429,16 @@ pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure
     Ok((validated(source.entries, &source.name, &source.text)?, source.base))
 }
 
+/// The robot file of a scenario over a DEM, for a result.
+pub(crate) fn robot_files_of(bare: &Bare) -> Result<Vec<InputFile>, Failure> {
+    let file = bare.scenario.legs.file.iter().map(|file| bare.base.join(file)).collect::<Vec<_>>();
+    for file in &file {
+        claims::reads(file);
+        verbose::read(file);
+    }
+    Ok(checksums(&file, &relative_name)?)
+}
+
 /// The keys of a terrain that is sliced.
 const SLICED_TERRAIN: [&str; 10] =
     ["route", "dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m", "via_lonlat_deg"];
@@ -545,7 +555,9 @@ fn validated(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failu
     // For a point the plan would promise what a trunk and limbs do not keep.
     if let Some((key, file)) = robot.filter(|_| !entries.is_unreadable()) {
         let message = format!("robot.file is \"{file}\", a robot with legs, and this command answers for a point alone");
-        let help = "remove it from [robot]: [hopper] then states the limits of the point".to_owned();
+        let over_dem = entries.files().iter().any(|(key, _)| key.path() == "terrain.dem") && !entries.ask_for_legs_on_dem();
+        let legs = if over_dem { "; plans and trials of legs over a dem need terrain.route = \"free\"" } else { "" };
+        let help = format!("remove it from [robot]: [hopper] then states the limits of the point{legs}");
         return Err(refused(vec![entries.file_problem(key, message, help)], name, text));
     }
     validated_with_legs(entries, name, text)

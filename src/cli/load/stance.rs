@@ -37,6 +37,8 @@ pub(crate) struct StanceInput {
     pub(crate) at_m: (MapPoint, Option<f64>),
     /// The scenario as used, without terrain.
     pub(crate) scenario: Scenario,
+    /// The folder that the paths of the scenario start from.
+    pub(crate) base: PathBuf,
     /// What the reader of the robot says.
     pub(crate) warnings: Vec<String>,
     record: CaseRecord,
@@ -100,7 +102,7 @@ pub(crate) fn load_stance(args: &StanceArgs) -> Result<StanceInput, Failure> {
         StanceTerrain::Mesh(input.file.clone(), scale)
     } else {
         let read = DemOptions::default().no_data(scenario.no_data).read(&input.file);
-        StanceTerrain::Dem(Box::new(read.map_err(|error| Failure::about(terrain, &error))?))
+        StanceTerrain::Dem(std::sync::Arc::new(read.map_err(|error| Failure::about(terrain, &error))?))
     };
     let warnings: Vec<String> = Purpose::Hop.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
     output::warn_all(common.quiet, &warnings);
@@ -113,7 +115,17 @@ pub(crate) fn load_stance(args: &StanceArgs) -> Result<StanceInput, Failure> {
     verbose::settings(&document, &scenario.search);
     let inputs = checksums(&files, &relative_name)?;
     let record = CaseRecord { scenario: document, inputs, warnings, crs: None };
-    Ok(StanceInput { terrain: ground, file: input.file, robot: robot.robot, at_m, scenario, warnings: robot.warnings, record })
+    let base = source.base;
+    Ok(StanceInput {
+        terrain: ground,
+        file: input.file,
+        robot: robot.robot,
+        at_m,
+        scenario,
+        base,
+        warnings: robot.warnings,
+        record,
+    })
 }
 
 /// The document of contacts without a robot.

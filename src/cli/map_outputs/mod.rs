@@ -1,5 +1,6 @@
 //! The files that `map` writes: opened before the search, and written after it, all or none.
 
+mod legs;
 mod pictures;
 mod profiles;
 mod rasters;
@@ -13,6 +14,7 @@ use chta::{
     study::map::{MapStudy, PreparedMap},
 };
 
+pub(crate) use legs::LegsMapOutputs;
 pub(crate) use travel::TravelMapOutputs;
 
 use super::{

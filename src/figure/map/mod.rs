@@ -4,6 +4,7 @@ mod data;
 mod hillshade;
 mod hops;
 mod landings;
+mod legs_map;
 mod mesh_plan;
 mod names;
 mod panel;
@@ -22,6 +23,7 @@ pub use data::{
 };
 pub use hops::draw_hop_map;
 pub use landings::draw_landing_map;
+pub use legs_map::{LegsMapFigure, LegsMapLayer, draw_legs_map};
 pub(super) use mesh_plan::{MeshPlan, draw_mesh_plan};
 pub(super) use panel::{goal_symbol, missed_symbol, scale_bar, start_symbol};
 pub use plan_view::PlanView;

@@ -66,15 +66,27 @@ pub fn draw_value_map(figure: &ValueMapFigure<'_>) -> Result<Picture, FigureErro
 pub(super) struct Steps {
     /// The class boundaries, in ascending order; for a single value that value twice, without values empty.
     pub(super) ends: Vec<f64>,
+    /// Whether each class is one whole number, that of its upper boundary.
+    is_counted: bool,
 }
 
 impl Steps {
     pub(super) fn between(low: f64, high: f64) -> Self {
         if low > high {
-            return Self { ends: Vec::new() };
+            return Self { ends: Vec::new(), is_counted: false };
         }
         let inner = Ticks::round(low, high, MOST_CLASSES).values.into_iter().filter(|&value| low < value && value < high);
-        Self { ends: std::iter::once(low).chain(inner).chain([high]).collect() }
+        Self { ends: std::iter::once(low).chain(inner).chain([high]).collect(), is_counted: false }
+    }
+
+    /// Classes of whole numbers: one for each where there are few.
+    pub(super) fn of_counts(low: f64, high: f64) -> Self {
+        if low > high || high - low >= MOST_CLASSES {
+            return Self::between(low, high);
+        }
+        // A class ends at its number and begins at the one before, below the least.
+        let numbers = std::iter::successors(Some(low - 1.0), |number| Some(number + 1.0)).take_while(|number| *number <= high);
+        Self { ends: numbers.collect(), is_counted: true }
     }
 
     fn count(&self) -> usize {
@@ -94,7 +106,7 @@ impl Steps {
 
     pub(super) fn texts(&self) -> Vec<String> {
         let text = |pair: &[f64]| {
-            if pair[0] == pair[1] { short(pair[0]) } else { format!("{} to {}", short(pair[0]), short(pair[1])) }
+            if pair[0] == pair[1] || self.is_counted { short(pair[1]) } else { format!("{} to {}", short(pair[0]), short(pair[1])) }
         };
         self.ends.windows(2).map(text).collect()
     }

@@ -22,7 +22,7 @@ use crate::{
     hop::envelope_limits,
     quantity::{ChainPoint, SlopeInterval, part_between},
     terrain::VerticalPlane,
-    world::{Contact, TrunkBox},
+    world::{Contact, Limit, TrunkBox},
 };
 
 /// The greatest turn of the trunk within a piece of an arc, rad: ten degrees.
@@ -64,6 +64,9 @@ impl StanceGround {
         buffers: &'b mut StanceBuffers,
     ) -> Option<(LineOfSight, &'b [SlopeInterval])> {
         if let (Some(from), Some(to)) = (takeoff.point(), landing.point()) {
+            if self.refused_by_map([takeoff, landing]).is_some() {
+                return Some((self.mesh().course(from, to)?.sight, &[]));
+            }
             return self.mesh().windows(from, to, &mut buffers.mesh);
         }
         buffers.mesh.free.clear();
@@ -78,7 +81,7 @@ impl StanceGround {
         let envelope = self.mesh().envelope();
         let lofts = envelope.lofts(sight, from, to);
         let within = SlopeInterval { lower: lofts.lower.max(0.0), upper: lofts.upper };
-        if lofts.is_empty() || within.upper <= 0.0 {
+        if lofts.is_empty() || within.upper <= 0.0 || self.refused_by_map([takeoff, landing]).is_some() {
             return Some((sight, &[]));
         }
         self.block(&course, [takeoff, landing], within, &mut buffers.mesh.blocked);
@@ -101,6 +104,20 @@ impl StanceGround {
 
     /// The feasible take-off set of a hop with each limit by itself; `None` for a vertical hop.
     pub fn takeoff_set(&self, takeoff: &Stance, landing: &Stance) -> Option<MeshTakeoffSet> {
+        let set = self.set_over_mesh(takeoff, landing)?;
+        match self.refused_by_map([takeoff, landing]) {
+            Some(limit) => Some(set.narrowed(|_| Err(limit))),
+            None => Some(set),
+        }
+    }
+
+    /// The limit of the map that refuses a flight, if one does.
+    fn refused_by_map(&self, ends: [&Stance; 2]) -> Option<Limit> {
+        self.map()?.refuses_flight(ends.map(|stance| stance.pose().root_m.xy()), self.robot().trunk_radius_m())
+    }
+
+    /// The feasible take-off set by all limits but those of the map.
+    fn set_over_mesh(&self, takeoff: &Stance, landing: &Stance) -> Option<MeshTakeoffSet> {
         if let (Some(from), Some(to)) = (takeoff.point(), landing.point()) {
             return self.mesh().takeoff_set(from, to);
         }

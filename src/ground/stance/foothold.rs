@@ -56,11 +56,14 @@ pub enum LimbOutcome {
     KeptOut,
     /// Another foot stands there already.
     SamePlace,
+    /// The ground within its reach has no friction.
+    NoFriction,
 }
 
 impl LimbOutcome {
     /// All outcomes.
-    pub const ALL: [Self; 6] = [Self::Stands, Self::NoGround, Self::FacesAway, Self::Hidden, Self::KeptOut, Self::SamePlace];
+    pub const ALL: [Self; 7] =
+        [Self::Stands, Self::NoGround, Self::FacesAway, Self::Hidden, Self::KeptOut, Self::SamePlace, Self::NoFriction];
 
     /// The name in results.
     pub const fn name(self) -> &'static str {
@@ -71,6 +74,7 @@ impl LimbOutcome {
             Self::Hidden => "ground_hidden",
             Self::KeptOut => "kept_out",
             Self::SamePlace => "same_place",
+            Self::NoFriction => "no_friction",
         }
     }
 
@@ -83,6 +87,7 @@ impl LimbOutcome {
             Self::Hidden => "reaches only ground behind other ground",
             Self::KeptOut => "reaches only ground that is kept out or steeper than the rest slope",
             Self::SamePlace => "reaches only ground where another foot stands",
+            Self::NoFriction => "reaches only ground without friction",
         }
     }
 }
@@ -154,7 +159,12 @@ impl StanceGround {
                 continue;
             }
             let cosine = group.parts.iter().map(|part| part.normal.dot(&normal)).fold(1.0, f64::min);
-            let Some(ground) = self.mesh().friction_of(part.facet) else { continue };
+            let of_map = self.map().and_then(|map| map.friction_at(point_m.xy()));
+            let Some(ground) = of_map.or_else(|| self.mesh().friction_of(part.facet)) else { continue };
+            if ground.coefficient() == 0.0 {
+                outcome = LimbOutcome::NoFriction;
+                continue;
+            }
             let friction = limb.friction.filter(|foot| foot.coefficient() < ground.coefficient()).unwrap_or(ground);
             return Ok(Foothold {
                 limb: number,
@@ -182,7 +192,7 @@ impl StanceGround {
                 clipper.pieces(limb, &inside, |piece| {
                     if normal.dot(&(limb.hip_m - piece.middle)) <= 0.0 {
                         outcome = worse(outcome, LimbOutcome::FacesAway);
-                    } else if self.keeps_feet_off(facet) {
+                    } else if self.keeps_feet_off(facet) || self.map_keeps_off(pose, &piece) {
                         outcome = worse(outcome, LimbOutcome::KeptOut);
                     } else {
                         let part = Part { facet, piece, normal };
@@ -208,6 +218,11 @@ impl StanceGround {
             RestSlope::AsFrictionHolds | RestSlope::Unlimited => false,
         };
         face.ground.keep_out || is_too_steep
+    }
+
+    /// Whether a part of a facet lies where the map lets no foot stand.
+    fn map_keeps_off(&self, pose: &Pose, piece: &Piece) -> bool {
+        self.map().is_some_and(|map| map.keeps_feet_off(pose.to_ground(&piece.middle).xy()))
     }
 }
 

@@ -19,6 +19,7 @@
 mod clip;
 mod flight;
 mod foothold;
+mod map;
 mod pose;
 mod push;
 mod stand;
@@ -29,6 +30,7 @@ use std::sync::Arc;
 use nalgebra::{Point3, Vector3};
 
 pub use foothold::{Foothold, LimbOutcome};
+pub use map::StanceMap;
 pub use pose::Pose;
 pub use stand::{NoStance, Stance, TrunkHit};
 
@@ -38,6 +40,9 @@ use crate::{
     world::{Robot, TrunkBox},
 };
 
+/// Heights at which a stance is looked for, as shares of the range.
+const HEIGHTS: [f64; 11] = [0.7, 0.6, 0.8, 0.5, 0.9, 0.4, 0.95, 0.3, 0.2, 0.1, 1.0];
+
 /// A robot with legs over a mesh: all that a hop between two of its stances depends on. A clone shares mesh and robot.
 #[derive(Clone, Debug)]
 pub struct StanceGround {
@@ -45,6 +50,7 @@ pub struct StanceGround {
     robot: Arc<Robot>,
     cone: ConeKind,
     up: StandsUp,
+    map: Option<Arc<StanceMap>>,
 }
 
 /// Which way is up for a trunk that stands on the ground.
@@ -57,13 +63,22 @@ pub enum StandsUp {
     Vertical,
 }
 
-/// A ground whose surface states no friction.
+/// A ground whose surface gives feet no friction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "the surface states its grip by angles from the slope, expected a friction coefficient: feet on slopes of several directions push by \
-     friction; give surface.friction_coefficient"
-)]
-pub struct NoFriction;
+pub enum NoFriction {
+    /// The surface states angles.
+    #[error(
+        "the surface states its grip by angles from the slope, expected a friction coefficient: feet on slopes of several directions push by \
+         friction; give surface.friction_coefficient"
+    )]
+    Angles,
+    /// A coefficient of 0.
+    #[error(
+        "found surface.friction_coefficient of 0, expected a number above 0 for a robot with legs: feet without friction push along the normal alone \
+         and do not stand"
+    )]
+    Zero,
+}
 
 /// Buffers of one stance and one hop after another.
 #[derive(Clone, Debug, Default)]
@@ -78,9 +93,24 @@ impl StanceGround {
     /// [`NoFriction`], unless the robot is a point.
     pub fn new(mesh: MeshGround, robot: impl Into<Arc<Robot>>, cone: ConeKind, up: StandsUp) -> Result<Self, NoFriction> {
         let robot = robot.into();
-        let ground = Self { mesh, robot, cone, up };
-        let stated = ground.mesh.surface().constant_friction().is_some() || ground.is_point();
-        if stated { Ok(ground) } else { Err(NoFriction) }
+        let ground = Self { mesh, robot, cone, up, map: None };
+        match ground.mesh.surface().constant_friction() {
+            _ if ground.is_point() => Ok(ground),
+            Some(friction) if friction.coefficient() > 0.0 => Ok(ground),
+            Some(_) => Err(NoFriction::Zero),
+            None => Err(NoFriction::Angles),
+        }
+    }
+
+    /// The same over the facets of a DEM, with what its map lays over them.
+    #[must_use]
+    pub fn with_map(self, map: impl Into<Arc<StanceMap>>) -> Self {
+        Self { map: Some(map.into()), ..self }
+    }
+
+    /// The map of the DEM whose facets are the mesh; `None` over a mesh of its own.
+    pub fn map(&self) -> Option<&StanceMap> {
+        self.map.as_deref()
     }
 
     /// The mesh.
@@ -116,6 +146,12 @@ impl StanceGround {
         let trunk = self.robot.trunk().iter().flat_map(TrunkBox::corners_m).map(|corner| corner.z).fold(0.0, lowest);
         let limbs = self.robot.limbs().iter().map(|limb| limb.bounds()[0].z).fold(0.0, lowest);
         [(-trunk).min(-limbs), -limbs]
+    }
+
+    /// Heights of the root over a place at which a stance is looked for, m, the middle ones of the [range](Self::heights_m) first.
+    pub fn standing_heights_m(&self) -> [f64; 11] {
+        let [low_m, high_m] = self.heights_m();
+        HEIGHTS.map(|share| low_m + (high_m - low_m) * share)
     }
 
     /// The highest ground straight under a point, m; `None` over a gap or beside the mesh.

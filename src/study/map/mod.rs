@@ -14,6 +14,7 @@ pub(super) use aim::{Aim, allowed};
 pub use answered::{MapStudy, NO_PREDECESSOR};
 pub use error::MapStudyError;
 pub use memory::MapMemory;
+pub(in crate::study) use prepared::spot;
 pub use prepared::{PreparedMap, Spot};
 pub use question::{MapQuestion, NamedPlace};
 

@@ -174,7 +174,7 @@ impl MapQuestion<'_> {
 }
 
 /// A position on the map, and the post nearest to it.
-fn spot(
+pub(in crate::study) fn spot(
     end: JourneyEnd,
     NamedPlace { name, place }: &NamedPlace,
     dem: &Dem,

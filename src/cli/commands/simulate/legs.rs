@@ -16,7 +16,13 @@ use crate::cli::{
 
 /// Simulates a route of a robot with legs.
 pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
-    not_on_mesh::refuse_for_legs(&[("--tally", args.tally.is_some(), "writes the landings of a point")])?;
+    not_on_mesh::refuse_for_legs(&[
+        ("--experiment", args.experiment.is_some(), "is flown along a profile"),
+        ("--output", args.output.is_some(), "writes landings along a profile"),
+        ("--plot-map", args.plot_map.is_some(), "draws landings of a point on a map"),
+        ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
+        ("--tally", args.tally.is_some(), "writes the landings of a point"),
+    ])?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let progress = Progress::new(args.common.quiet);
     let question = LegsRouteQuestion { scenario: &input.scenario, base: &input.base };
@@ -31,7 +37,7 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
     show(
         args.answer.format,
         || legs_simulate_text(answer),
-        || input.document(DocumentKind::SimulateLegs, &simulated.warnings, answer),
+        || input.document_on_map(DocumentKind::SimulateLegs, simulated.routed.crs.as_ref(), &simulated.warnings, answer),
     )?;
     Ok(Answer::of(answer.plan.plan.is_traversable() && answer.shows_success()))
 }

@@ -18,15 +18,15 @@ use crate::cli::{
 /// Simulates a free route over a mesh.
 pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
     args.check_half_width()?;
+    if input.scenario.legs.file.is_some() {
+        return super::legs::run(args, input);
+    }
     not_on_mesh::refuse(&[
         ("--experiment", args.experiment.is_some(), "is flown along a profile"),
         ("--output", args.output.is_some(), "writes landings along a profile"),
         ("--plot-map", args.plot_map.is_some(), "draws landings on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
     ])?;
-    if input.scenario.legs.file.is_some() {
-        return super::legs::run(args, input);
-    }
     let of_result = MeshResult::of(args, input)?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let tally = args.tally.as_deref().map(Pending::begin).transpose()?;
