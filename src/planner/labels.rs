@@ -44,6 +44,14 @@ impl Tracked {
         tracked
     }
 
+    /// The same for paths of which one of the amounts is at most so much: others are left out, but labels are not compared by it.
+    pub(super) fn at_most(mut self, amount: Amount, most: f64) -> Self {
+        for (_, allowed) in self.amounts.iter().zip(&mut self.allowed).filter(|(known, _)| **known == amount) {
+            *allowed = allowed.min(most * (1.0 + Budgets::TOLERANCE));
+        }
+        self
+    }
+
     /// How many amounts they are.
     pub(super) const fn len(&self) -> usize {
         self.amounts.len()

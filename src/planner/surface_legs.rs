@@ -330,6 +330,16 @@ impl<'a> SurfaceLegs<'a> {
         (self.start.index(), self.goal.0.index())
     }
 
+    /// What paths from the start take at least that have more hops than the fewest. `is_first`: whether the first hop begins the mission.
+    pub(super) fn least_in_more_hops(&self, is_first: bool) -> Amounts {
+        let offers = &self.offers;
+        let (Some(at), Some(fewest)) = (offers.surface.position(self.start), self.hops_left.of(self.start)) else {
+            return Amounts::NONE;
+        };
+        let run_m = libm::hypot(self.goal.1.at.x - at.at.x, self.goal.1.at.y - at.at.y);
+        offers.settled(&offers.least.over_in(run_m, self.goal.1.z_m - at.z_m, u64::from(fewest) + 1), is_first)
+    }
+
     /// Pairs of nodes whose hop was computed.
     pub(super) fn pairs(&self) -> u64 {
         *self.pairs.borrow()

@@ -166,7 +166,10 @@ impl Searched {
         let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
         let (success_estimated, to_go) = match known {
             Some(share) => (share, None),
-            None => journey.success_of(&self.found, path, &keys.options(), progress).map_err(Box::new)?,
+            None => {
+                let flown = journey.success_of(&self.found, path, &keys.options(), progress).map_err(Box::new)?;
+                (flown.success, flown.to_go)
+            }
         };
         let success = SuccessEstimate { success_estimated, success_policy: keys.policy };
         let simulation = journey.simulation(path, None).map_err(Box::new)?;
