@@ -4,6 +4,7 @@ mod drive_again;
 mod execute;
 mod generate;
 mod hop;
+mod outages;
 mod over_mesh;
 mod stances_again;
 #[cfg(test)]
@@ -15,6 +16,7 @@ pub use drive_again::{DriveViolation, DrivenAgain, drive_again};
 pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLimit, Violation, execute, execute_over_mesh};
 pub use generate::{PathError, TooManyHops, generate, generate_over};
 pub use hop::{Aim, Hop, HopPath, Propellant, RollOut, Totals, heading_deg};
+pub use outages::{LongestOutage, longest_outage};
 pub use over_mesh::{path_over_mesh, path_over_stances};
 pub use stances_again::{StanceFault, StanceViolation, flown_by_stances};
 pub use steps::NoCommand;

@@ -279,6 +279,9 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
     for sentence in answer.objective.iter().flat_map(ObjectiveRecord::sentences) {
         sheet.line(format_args!("{sentence}"));
     }
+    for outage in &answer.outages {
+        sheet.line(format_args!("{}", outage.sentence()));
+    }
     if let Some(refusal) = &answer.commands_refusal {
         sheet.line(format_args!("not with commands in steps: {refusal}"));
     }

@@ -18,16 +18,16 @@ use crate::{
     graph::{self, Edge, Leg, NodeSet, Outcome, PointSpacing, RefusalCounts, ReliabilityUse, SearchError},
     ground::{ContactPoint, DemGround, MapPosition, Surface},
     hop::HopTest,
-    path::{Execution, Hop, HopPath, execute},
+    path::{Execution, Hop, HopPath, execute, longest_outage},
     planner::{
         Amount, Budgets, FreeRoute, LabelCap, Objective, RouteError, RouteGap, RouteGoal, RoutePath, RouteQuestion,
         SearchedCommands, SurfaceLattice, SurfaceNodes, free_route_by,
     },
     progress::Progress,
     quantity::{MapPoint, VertexId},
-    report::{CheckAnswer, DeratingRecord, ObjectiveRecord, RouteGapRecord, RouteKind, RouteRecord},
+    report::{CheckAnswer, DeratingRecord, ObjectiveRecord, OutageRecord, RouteGapRecord, RouteKind, RouteRecord},
     scenario::{Route, Scenario, TerrainSource},
-    terrain::{MapPlace, TerrainError},
+    terrain::{Layer, MapPlace, TerrainError},
 };
 
 /// Why a free route has no answer.
@@ -137,6 +137,15 @@ pub(super) fn hops_alone(scenario: &Scenario, question: &'static str) -> Result<
     if scenario.drives().is_some() { Err(CaseError::HopsOnly { question }) } else { Ok(()) }
 }
 
+/// Refuses a scenario with layers that may be left for a while.
+///
+/// # Errors
+/// [`CaseError::Outage`].
+pub(super) fn without_outages(scenario: &Scenario, question: &'static str) -> Result<(), CaseError> {
+    let found = scenario.layers.iter().find(|layer| layer.rule.outage.is_some());
+    found.map_or(Ok(()), |layer| Err(CaseError::Outage { layer: layer.rule.name, question }))
+}
+
 /// Refuses a scenario that visits several targets.
 ///
 /// # Errors
@@ -159,6 +168,8 @@ pub(super) struct FreeSearch {
     pub(super) budgets: Budgets,
     /// How many labels it may keep.
     pub(super) cap: LabelCap,
+    /// Where layers that exempt targets count as met.
+    pub(super) exempt: Vec<MapPoint>,
 }
 
 /// Chooses nodes for a case over its ground, with start and goal.
@@ -189,7 +200,8 @@ impl FreeSearch {
         let goal = RouteGoal { start, goal, effort: search.effort, takeoff: search.takeoff };
         let (objective, budgets) = (case.scenario.full_objective(), case.scenario.total_budgets());
         let cap = RouteSize::of(&ground, &nodes, &objective, &budgets).cap(case.memory_max_bytes)?;
-        Ok(Self { case, ground, nodes, goal, ends, objective, budgets, cap })
+        let exempt = vec![goal.goal];
+        Ok(Self { case, ground, nodes, goal, ends, objective, budgets, cap, exempt })
     }
 
     /// What it takes at most.
@@ -242,6 +254,16 @@ impl FreeSearch {
             verify(case.planning(), &self.ground, path, ends)?;
         }
         Ok(Unrolled { case, test, legs, ends, path: flown })
+    }
+
+    /// The longest outages of a path, of every layer that may be left for a while.
+    pub(super) fn outages(&self, path: &HopPath) -> Vec<OutageRecord> {
+        let hopper = self.case.scenario.hopper.limits();
+        let record = |layer: &Layer| {
+            let limit = layer.rule().outage?;
+            Some(OutageRecord::new(&longest_outage(path, hopper, layer, &self.exempt), &limit))
+        };
+        self.ground.layers().iter().filter_map(record).collect()
     }
 
     /// What the answer says of the objective, for a scenario that plans by one.
@@ -305,7 +327,8 @@ impl FreeSearch {
         let Unrolled { case: unrolled, test, legs, ends, path } = self.flown(laid)?;
         warnings.extend(path.iter().flat_map(|path| case.scenario.path_warnings(path)));
         let found = answer(Outcome::Path { legs, cost });
-        let check = checked(&test, &ends, &found).with_path(path.as_ref());
+        let outages = path.as_ref().map_or_else(Vec::new, |path| self.outages(path));
+        let check = checked(&test, &ends, &found).with_path(path.as_ref()).with_outages(outages);
         Ok(FoundRoute { test, ends, found, check, path, warnings, case: unrolled })
     }
 }

@@ -91,7 +91,8 @@ pub(super) fn with_success(
     let others = if looks_on { reliable_places(&best, progress)? } else { Vec::new() };
     for places in &others {
         let Some(other) = other_route(search, route, places)? else { continue };
-        if scenario.risk == ReliabilityUse::FewestHops && other.found.hops() != hops {
+        let is_unwanted = scenario.risk == ReliabilityUse::FewestHops && other.found.hops() != hops;
+        if is_unwanted || !other.check.keeps_outages() {
             continue;
         }
         let other = estimated(other, progress)?;

@@ -4,11 +4,12 @@ use rayon::prelude::*;
 
 use super::{
     super::{
-        Amount, Budgets, FoundPath, LabelCap, Objective, OverBudget, RouteError, RoutePath, RouteQuestion, SurfaceNode,
+        Amount, Budgets, FoundPath, LabelCap, Objective, OutagePart, RouteError, RoutePath, RouteQuestion, SurfaceNode,
         SurfaceNodes,
         by_layers::best_of_fewest,
         fewest_hops::{FewestHops, Within},
         labels::Tracked,
+        outage::{Outages, Stretch},
         route_gap::RouteGap,
         search::Run,
         surface_hops::{Side, SurfaceHops},
@@ -28,13 +29,24 @@ use crate::{
 pub(super) struct StopLegs<'a> {
     surface: SurfaceHops<'a>,
     stops: Vec<(SurfaceNode, MapPosition)>,
+    /// The layers that may be left for a while.
+    outages: Outages,
     meter: Meter<'a>,
 }
 
-/// The ways of one leg, and the hops of each.
+/// A way of a leg.
+#[derive(Debug)]
+pub(super) struct Way {
+    pub(super) path: RoutePath,
+    hops: Vec<[SurfaceNode; 2]>,
+    /// How it is outside the conditions of the layers that may be left for a while.
+    outages: Vec<OutagePart>,
+}
+
+/// The ways of one leg.
 #[derive(Debug, Default)]
 pub(super) struct Ways {
-    pub(super) paths: Vec<(RoutePath, Vec<[SurfaceNode; 2]>)>,
+    pub(super) paths: Vec<Way>,
     pairs: u64,
     capped: bool,
 }
@@ -75,6 +87,8 @@ impl<'q> LegQuestion<'q> {
 pub(super) struct Legs {
     targets: usize,
     ways: Vec<([usize; 2], Ways)>,
+    /// The longest stretches outside the conditions of layers.
+    outages: Vec<Stretch>,
     pub(super) pairs: u64,
     pub(super) capped: bool,
 }
@@ -86,9 +100,10 @@ impl Legs {
 
     /// What all ways take.
     pub(super) fn costs(&self) -> LegCosts {
-        let mut costs = LegCosts::none(self.targets);
+        let mut costs = LegCosts::none(self.targets).under(self.outages.clone());
         for (pair, ways) in &self.ways {
-            costs.set(*pair, ways.paths.iter().map(|(path, _)| path.totals).collect());
+            costs.set(*pair, ways.paths.iter().map(|way| way.path.totals).collect());
+            costs.set_outages(*pair, ways.paths.iter().map(|way| way.outages.clone()).collect());
         }
         costs
     }
@@ -97,7 +112,7 @@ impl Legs {
     pub(super) fn least(&self, amount: Amount) -> impl Fn([usize; 2]) -> f64 + '_ {
         move |pair| {
             let paths = self.ways(pair).into_iter().flat_map(|ways| &ways.paths);
-            paths.map(|(path, _)| path.totals.of(amount)).fold(f64::INFINITY, f64::min)
+            paths.map(|way| way.path.totals.of(amount)).fold(f64::INFINITY, f64::min)
         }
     }
 
@@ -131,8 +146,9 @@ impl<'a> StopLegs<'a> {
             let node = nodes.place(*at).ok_or(RouteError::NoGround(*at))?;
             Ok((node, surface.position(node).ok_or(RouteError::NoGround(*at))?))
         };
+        let outages = Outages::of(ground, stops[1..].to_vec());
         let stops = stops.iter().map(stop).collect::<Result<_, RouteError>>()?;
-        Ok(Self { surface, stops, meter: Meter::new(progress, Stage::Search) })
+        Ok(Self { surface, stops, outages, meter: Meter::new(progress, Stage::Search) })
     }
 
     pub(super) fn refuse_wrong(&mut self, hops: Vec<[SurfaceNode; 2]>) -> bool {
@@ -171,7 +187,7 @@ impl<'a> StopLegs<'a> {
         let ways: Vec<([usize; 2], Ways)> = wanted.par_iter().map(between).collect::<Result<_, Cancelled>>()?;
         let pairs = ways.iter().map(|(_, ways)| ways.pairs).sum();
         let capped = ways.iter().any(|(_, ways)| ways.capped);
-        Ok(Legs { targets: self.targets(), ways, pairs, capped })
+        Ok(Legs { targets: self.targets(), ways, outages: self.outages.most(), pairs, capped })
     }
 
     /// All pairs of stops.
@@ -206,32 +222,44 @@ impl<'a> StopLegs<'a> {
         let RouteQuestion { commands, errors, cap, .. } = question.route;
         // A target is left by a hop that follows a landing, and a machine that begins has not landed.
         let settling = if from == 0 { Settling::BeforeAllBut(start) } else { Settling::BeforeAll };
-        let is_one = budgets.all().all(|(amount, _)| amount == objective.first());
-        let hops_decide = objective.first() == Amount::Hops && is_one;
+        let by_first = budgets.all().all(|(amount, _)| amount == objective.first());
+        // A stretch outside may go on through a stop: what is left of it decides beside the objective.
+        let in_outages = !self.outages.are_none();
+        let goes_on = |stop: usize| stop > 0 && self.outages.any_outside(self.stops[stop].1.at);
+        let is_one = by_first && !(goes_on(from) || goes_on(to));
+        let hops_decide = objective.first() == Amount::Hops && by_first && !in_outages;
         let counted = if hops_decide { Counted::Known } else { Counted::All };
         let offers = LegOffers::new(&self.surface, settling, (commands, question.takeoff), errors);
-        let legs = SurfaceLegs::new(offers, (start, goal), (field, counted), &self.meter);
-        let is_alone = objective.amounts().len() == 1 && budgets.are_none() && !hops_decide;
+        let legs = SurfaceLegs::new(offers, (start, goal), (field, counted), &self.meter).under(&self.outages, to == 0);
+        let is_alone = objective.amounts().len() == 1 && budgets.are_none() && !hops_decide && !in_outages;
         let of_fewest = if is_alone { self.least_of_fewest((&legs, field), (objective.first(), cap))? } else { None };
-        let (paths, capped): (Vec<FoundPath>, bool) = if hops_decide {
+        let held = || vec![OutagePart::HELD; self.outages.most().len()];
+        let (paths, capped): (Vec<(FoundPath, Vec<OutagePart>)>, bool) = if hops_decide {
             let found = best_of_fewest(&legs, field, (objective, cap), &self.meter)?;
-            (found.path.into_iter().collect(), found.capped)
+            (found.path.into_iter().map(|path| (path, held())).collect(), found.capped)
         } else if let Some((path, total)) = of_fewest.as_ref().map(|path| (path, path.totals.of(objective.first())))
             && total <= legs.least_in_more_hops(from == 0).of(objective.first())
         {
-            (vec![path.clone()], false)
+            (vec![(path.clone(), held())], false)
         } else {
             let known = of_fewest.map(|path| (objective.first(), path.totals.of(objective.first())));
             let bounds = at_most.iter().copied().chain(known);
-            let tracked = bounds.fold(Tracked::new(objective, budgets), |tracked, (amount, most)| tracked.at_most(amount, most));
+            let begins = if from == 0 { OutagePart::HELD } else { OutagePart::OPEN };
+            let tracked = Tracked::new(objective, budgets).under(self.outages.most(), begins);
+            let tracked = bounds.fold(tracked, |tracked, (amount, most)| tracked.at_most(amount, most));
             let mut run = Run::new(&legs, legs.ends(), tracked, cap);
             let best = run.until(is_one)?;
             let labels = if is_one { best.into_iter().collect() } else { run.at_goal() };
-            let paths = labels.into_iter().map(|label| run.path(label)).collect::<Result<_, _>>()?;
+            let outages = |label: u32| (0..held().len()).map(|layer| run.labels.outage(label, layer)).collect();
+            let paths = labels.into_iter().map(|label| Ok((run.path(label)?, outages(label)))).collect::<Result<_, Cancelled>>()?;
             (paths, run.labels.capped)
         };
-        let way = |path: &FoundPath| (legs.route_path(path, question.effort), SurfaceLegs::hops_of(path).collect());
-        Ok(Ways { paths: paths.iter().map(way).collect(), pairs: legs.pairs(), capped })
+        let way = |(path, outages): (FoundPath, Vec<OutagePart>)| Way {
+            hops: SurfaceLegs::hops_of(&path).collect(),
+            path: legs.route_path(&path, question.effort),
+            outages,
+        };
+        Ok(Ways { paths: paths.into_iter().map(way).collect(), pairs: legs.pairs(), capped })
     }
 
     /// The path that takes the least of an amount of those of the fewest hops. Where every hop waits for long it takes the least of all paths, and
@@ -253,7 +281,7 @@ impl<'a> StopLegs<'a> {
         let mut legs = Vec::new();
         for (ends, way) in found.visits.stops.windows(2).zip(&found.visits.ways) {
             let way = found.legs.ways([ends[0], ends[1]]).and_then(|ways| ways.paths.get(*way));
-            let Some((path, of_path)) = way else { continue };
+            let Some(Way { path, hops: of_path, .. }) = way else { continue };
             hops.extend(of_path);
             legs.push(TourLeg { from: ends[0], to: ends[1], path: path.clone() });
         }
@@ -292,7 +320,7 @@ impl<'a> StopLegs<'a> {
             } else if !self.is_possible(fields, question, set | (1 << (target - 1)))? {
                 WhyLeftOut::NotTogether
             } else {
-                WhyLeftOut::Budgets(Self::over_budgets(&found.best, question, set | (1 << (target - 1)))?)
+                Self::limits(&found.best, question, set | (1 << (target - 1)))?
             };
             tour.left_out.push((target, why));
         }
@@ -325,11 +353,15 @@ impl<'a> StopLegs<'a> {
         Ok(most_visits(&costs, rules, (objective, &Budgets::NONE, cap))?.0.set() == set)
     }
 
-    /// By how much the best mission over a set of targets exceeds the budgets.
-    fn over_budgets(best: &LegCosts, question: &TourQuestion<'_>, set: u16) -> Result<Vec<OverBudget>, Cancelled> {
+    /// Whether outages alone exclude all missions over a set of targets, or by how much the best one exceeds the budgets.
+    fn limits(best: &LegCosts, question: &TourQuestion<'_>, set: u16) -> Result<WhyLeftOut, Cancelled> {
         let RouteQuestion { objective, budgets, cap, .. } = question.route;
         let rules = VisitRules { order: question.order, returns: question.returns, allowed: set };
         let (visits, _) = most_visits(best, rules, (objective, &Budgets::NONE, cap))?;
-        Ok(budgets.exceeded_by(&visits.totals).collect())
+        Ok(if visits.set() == set {
+            WhyLeftOut::Budgets(budgets.exceeded_by(&visits.totals).collect())
+        } else {
+            WhyLeftOut::Outages
+        })
     }
 }

@@ -74,6 +74,8 @@ pub enum WhyLeftOut {
     NoWayBack,
     /// No order of legs over these nodes visits it together with those that are visited.
     NotTogether,
+    /// Every mission over it and those that are visited is outside the condition of a layer for too long.
+    Outages,
     /// The best mission over it and those that are visited takes more than the budgets.
     Budgets(Vec<OverBudget>),
 }

@@ -198,7 +198,9 @@ fn answer(search: &TargetsSearch, tour: &Tour, legs: &[FlownLeg], path: Option<&
     let objective = path.map_or_else(|| objective.clone(), |path| objective.clone().flown(&path.amounts()));
     let propellant_shortage = path.and_then(|path| PropellantShortage::of(&path.totals));
     let is_whole = tour.left_out.is_empty();
-    let is_traversable = is_whole && propellant_shortage.is_none() && objective.is_met();
+    let outages = path.map_or_else(Vec::new, |path| free.outages(path));
+    let keeps_outages = outages.iter().all(|outage| outage.met);
+    let is_traversable = is_whole && propellant_shortage.is_none() && objective.is_met() && keeps_outages;
     let place = |at: MapPoint| free.ground.position(at).map_or([at.x, at.y, f64::NAN], |place| point(&place));
     let bound = |[from, to]: [usize; 2]| lower_bound(&free.ground, [stops[from], stops[to]]);
     let visits = visits(search, tour, legs);
@@ -221,6 +223,7 @@ fn answer(search: &TargetsSearch, tour: &Tour, legs: &[FlownLeg], path: Option<&
         hops: path.map(|path| path.hops.len() as u64),
         hops_lower_bound: fewest_hops_of_visits(&bound, stops.len() - 1, search.keys.order, search.keys.return_to_start),
         objective,
+        outages,
         derating: DeratingRecord::of(&scenario.derating),
         propellant_shortage,
         search: TargetsSearchRecord {
@@ -279,6 +282,7 @@ fn why_record(why: &WhyLeftOut, scenario: &Scenario) -> LeftOutRecord {
         },
         WhyLeftOut::NoWayBack => of(WhyRecord::NoWayBack),
         WhyLeftOut::NotTogether => of(WhyRecord::NotTogether),
+        WhyLeftOut::Outages => of(WhyRecord::Outages),
         WhyLeftOut::Budgets(over) => {
             let row =
                 |over: &crate::planner::OverBudget| OverBudgetRecord { amount: over.amount, total: over.total, max: over.most };
