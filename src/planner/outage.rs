@@ -84,7 +84,8 @@ impl OutagePart {
     /// What of a stretch lies before this part is not known: the beginning is judged once it is.
     pub(super) fn then(&self, next: &Self, most: Stretch) -> Option<Self> {
         let joined = self.after.then(next.before);
-        if !joined.is_within(most) || !next.within.is_within(most) {
+        let own = if next.is_open { Stretch::NONE } else { next.after };
+        if [joined, next.within, own].iter().any(|stretch| !stretch.is_within(most)) {
             return None;
         }
         Some(Self {

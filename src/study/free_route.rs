@@ -146,6 +146,20 @@ pub(super) fn without_outages(scenario: &Scenario, question: &'static str) -> Re
     found.map_or(Ok(()), |layer| Err(CaseError::Outage { layer: layer.rule.name, question }))
 }
 
+/// What is to be known where hops are judged each by itself: layers that may be left for a while do not refuse them.
+pub(super) fn outages_not_counted(scenario: &Scenario) -> impl Iterator<Item = String> + '_ {
+    scenario.layers.iter().filter(|layer| layer.rule.outage.is_some()).map(|layer| {
+        let name = layer.rule.name;
+        format!("layer.{name} may be left for a while, which counts along whole paths: it refuses no hop by itself")
+    })
+}
+
+/// Of a stop that refuses every contact: which layer does not hold there.
+pub(super) fn refused_stop(ground: &DemGround, name: &str, at: MapPoint) -> Option<String> {
+    let layer = ground.layers().refusing_contact(at)?;
+    Some(format!("layer {layer} does not hold at {name}, so that no hop begins or ends there"))
+}
+
 /// Refuses a scenario that visits several targets.
 ///
 /// # Errors
@@ -280,6 +294,8 @@ impl FreeSearch {
         let scenario = &self.case.scenario;
         let mut warnings = left_out(scenario);
         warnings.extend(coarse_nodes(level_hop_m(&self.ground), "the free route", self.nodes.lattice().spacing_m()));
+        let ends = [("the start", self.goal.start), ("the goal", self.goal.goal)];
+        warnings.extend(ends.iter().filter(|_| path.is_none()).filter_map(|(name, at)| refused_stop(&self.ground, name, *at)));
         if scenario.plans_by_objective() {
             #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
             let spanned =
