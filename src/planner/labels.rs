@@ -26,12 +26,26 @@ pub(super) struct Tracked {
 impl Tracked {
     /// For an objective within budgets.
     pub(super) fn new(objective: &Objective, budgets: &Budgets) -> Self {
-        let mut amounts = objective.amounts().to_vec();
-        amounts.extend(budgets.all().map(|(amount, _)| amount).filter(|amount| !objective.amounts().contains(amount)));
+        Self::of(objective.amounts(), budgets)
+    }
+
+    /// For all best totals of one amount against another: the queue has the first in ascending order and, of equals, the second, so that a label
+    /// that is taken from it is seldom dominated by a later one.
+    pub(super) fn front(first: Amount, second: Amount, budgets: &Budgets) -> Self {
+        let mut tracked = Self::of(&[first, second], budgets);
+        if !tracked.compared.contains(&1) {
+            tracked.compared.push(1);
+        }
+        tracked
+    }
+
+    fn of(objective: &[Amount], budgets: &Budgets) -> Self {
+        let mut amounts = objective.to_vec();
+        amounts.extend(budgets.all().map(|(amount, _)| amount).filter(|amount| !objective.contains(amount)));
         let allowed: Vec<f64> = amounts.iter().map(|amount| budgets.allowed(*amount)).collect();
         // A label that is no worse by the objective has no more of its first amount; a greatest speed within its budget stays there.
         let compared = (1..amounts.len()).filter(|&i| allowed[i].is_finite() && amounts[i].adds_up()).collect();
-        Self { objective: objective.amounts().len(), amounts, compared, allowed, outages: Vec::new(), begins: OutagePart::HELD }
+        Self { objective: objective.len(), amounts, compared, allowed, outages: Vec::new(), begins: OutagePart::HELD }
     }
 
     /// The same for paths with stretches no longer than these outside the conditions of layers.
@@ -61,20 +75,6 @@ impl Tracked {
             let joined = self.outage_of(before, layer).then(&part(layer), *most);
             joined.map(|joined| kept.copy_from_slice(&joined.kept())).is_some()
         })
-    }
-
-    /// For all best totals of one amount against another.
-    pub(super) fn front(first: Amount, second: Amount, budgets: &Budgets) -> Self {
-        let mut tracked = Self::new(&Objective::of(first), budgets);
-        let at = tracked.amounts.iter().position(|amount| *amount == second).unwrap_or_else(|| {
-            tracked.amounts.push(second);
-            tracked.allowed.push(f64::INFINITY);
-            tracked.amounts.len() - 1
-        });
-        if !tracked.compared.contains(&at) {
-            tracked.compared.push(at);
-        }
-        tracked
     }
 
     /// The same for paths of which one of the amounts is at most so much: others are left out, but labels are not compared by it.

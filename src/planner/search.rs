@@ -319,11 +319,21 @@ impl<'g, G: LegGraph> Run<'g, G> {
                 }
                 continue;
             }
+            if !first_is_enough && self.is_beaten(node, label, &mut scratch.whole) {
+                continue;
+            }
             self.settled += 1;
             let Self { graph, goal, labels, queue, .. } = self;
             graph.successors(node, &mut Settled { graph: *graph, goal: *goal, labels, queue, label, scratch: &mut scratch })?;
         }
         Ok(None)
+    }
+
+    /// Whether a path to the goal found since a label was made takes no more of anything than every path that goes on from it.
+    fn is_beaten(&self, node: usize, label: u32, whole: &mut Vec<f64>) -> bool {
+        let tracked = &self.labels.tracked;
+        !tracked.with_rest(self.labels.totals(label), &self.graph.least_to_goal(node), whole)
+            || self.labels.node_dominates(self.goal, whole)
     }
 
     /// The labels of the goal.

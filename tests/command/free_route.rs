@@ -327,7 +327,8 @@ fn the_commands_of_the_document_run() {
         // The least capable values have short hops.
         let (coarse, others): (Vec<_>, Vec<_>) =
             warned.into_iter().partition(|line| line.contains(" nodes of the free route, 2 m apart, fewer than 8"));
-        assert_eq!((ran.status, others), (0, Vec::new()), "{command}");
+        // Fewer hops than all targets take: some are left out.
+        assert_eq!((ran.status, others), (i32::from(command.ends_with("budget.hops_max=60")), Vec::new()), "{command}");
         assert_eq!(coarse.len(), usize::from(command.starts_with("require")), "{command}: {coarse:?}");
         // What the document says of them.
         if command.ends_with("--dry-run") {

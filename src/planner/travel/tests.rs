@@ -360,3 +360,35 @@ fn budgets_are_kept_or_reported() {
     }
     assert!(kept > 10 && unmet > 5, "{kept} kept, {unmet} unmet");
 }
+
+#[test]
+fn a_front_has_the_best_within_every_number_of_hops() {
+    let draw = &mut Draw::seeded(1907);
+    let mut rows = 0;
+    for case in 0..30 {
+        let Some(world) = world(draw, [0.0, 0.05][case % 2]) else { continue };
+        for amount in [Amount::MissionTime, Amount::Energy, Amount::Distance] {
+            let objective = objective(&[amount]);
+            let question = world.question(&objective, &Budgets::NONE, Travel::Both);
+            let goal = World::goal(world.ends);
+            let front = front_of_missions(&world.ground, &world.nodes, &goal, (amount, &question), &()).unwrap();
+            let row = |path: &MissionPath| (path.totals.of(Amount::Hops), path.totals.of(amount));
+            let front: Vec<(f64, f64)> = front.paths.iter().map(row).collect();
+            rows += front.len();
+            assert!(front.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 > pair[1].1), "case {case}: {front:?}");
+            let most = front.last().map_or(2.0, |last| last.0 + 1.0);
+            let mut hops = 0.0;
+            while hops <= most {
+                let budgets = Budgets::NONE.with(Amount::Hops, hops).unwrap();
+                let within = travel(&world.ground, &world.nodes, &goal, &world.question(&objective, &budgets, Travel::Both), &());
+                let best = within.unwrap();
+                let best = best.path.filter(|_| best.within).map(|path| path.totals.of(amount));
+                let of_front = front.iter().rfind(|row| row.0 <= hops).map(|row| row.1);
+                assert_eq!(best.is_some(), of_front.is_some(), "case {case}: {hops} hops");
+                assert!(best.zip(of_front).is_none_or(|(a, b)| close(a, b)), "case {case}: {hops} hops: {best:?}, {of_front:?}");
+                hops += 1.0;
+            }
+        }
+    }
+    assert!(rows > 80, "{rows}");
+}

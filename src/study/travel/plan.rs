@@ -3,6 +3,7 @@
 use super::super::{
     Case, JourneyError,
     free_route::left_out,
+    front::front_commands,
     nodes::{coarse_nodes, level_hop_m, post_spacing_m},
 };
 use super::{
@@ -59,7 +60,8 @@ pub struct TravelPlanned {
 pub fn travel_plan(case: &Case, options: TravelOptions, progress: &dyn Progress) -> Result<TravelPlanned, JourneyError> {
     let search = TravelSearch::of(case)?;
     let mission = search.best(progress)?;
-    let walked = mission.path.as_ref().map(|path| stretches(&search, path)).transpose()?.unwrap_or_default();
+    let walked =
+        mission.path.as_ref().map(|path| stretches(&search, path, case.scenario.commands)).transpose()?.unwrap_or_default();
     let mut answer = answer(&search, &mission, &walked)?;
     if options.alternatives {
         answer.alternatives = Some(alternatives(&search, &mission, progress)?);
@@ -179,7 +181,7 @@ fn front(
 ) -> Result<TravelFrontRecord, JourneyError> {
     let front = search.front((amount, hops_max), progress)?;
     for path in &front.paths {
-        agreed_sums(search, &stretches(search, path)?, &path.totals)?;
+        agreed_sums(search, &stretches(search, path, front_commands(search.scenario()).0)?, &path.totals)?;
     }
     let paths = front.paths.iter().map(|path| TravelSumsRecord::new(&path.totals)).collect();
     Ok(TravelFrontRecord { amount, hops_max, labels_capped: front.capped, paths })

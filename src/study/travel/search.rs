@@ -1,11 +1,11 @@
 //! The search for a mission of a case.
 
-use super::super::{Case, CaseError, JourneyError, dem_ground::dem_ground, free_route::FreeSearch};
+use super::super::{Case, CaseError, JourneyError, dem_ground::dem_ground, free_route::FreeSearch, front::front_commands};
 use super::size::TravelMemory;
 use crate::{
     ground::DemGround,
     planner::{
-        Amount, Budgets, Mission, MissionFront, MissionQuestion, Objective, RouteQuestion, SearchedCommands, Toward, Travel,
+        Amount, Budgets, Mission, MissionFront, MissionQuestion, Objective, RouteGoal, RouteQuestion, Toward, Travel,
         front_of_missions, travel, travel_field,
     },
     progress::Progress,
@@ -87,10 +87,12 @@ impl TravelSearch {
     pub(super) fn front(&self, (amount, hops_max): (Amount, u64), progress: &dyn Progress) -> Result<MissionFront, JourneyError> {
         let objective = Objective::of(amount);
         let mut question = self.question(self.keys.travel, &objective);
-        question.route.commands = SearchedCommands::Distinct;
+        let (commands, takeoff) = front_commands(self.scenario());
+        question.route.commands = commands;
+        let goal = RouteGoal { takeoff, ..self.free.goal };
         #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
         let budgets = self.free.budgets.with(Amount::Hops, hops_max as f64).unwrap_or(self.free.budgets);
         question.route.budgets = &budgets;
-        Ok(front_of_missions(&self.free.ground, &self.free.nodes, &self.free.goal, (amount, &question), progress)?)
+        Ok(front_of_missions(&self.free.ground, &self.free.nodes, &goal, (amount, &question), progress)?)
     }
 }

@@ -36,11 +36,15 @@ pub(super) struct Driven {
 #[error("a planned drive leg does not pass its own check: {0}; this is a defect of chta, please report it with the scenario")]
 pub struct DriveDefect(pub String);
 
-/// The stretches of a path.
+/// The stretches of a path that was searched with these commands.
 ///
 /// # Errors
 /// [`JourneyError`]; a [`Defect`] or a [`DriveDefect`] where a leg does not pass the checker.
-pub(super) fn stretches(search: &TravelSearch, path: &MissionPath) -> Result<Vec<Stretch>, JourneyError> {
+pub(super) fn stretches(
+    search: &TravelSearch,
+    path: &MissionPath,
+    commands: SearchedCommands,
+) -> Result<Vec<Stretch>, JourneyError> {
     let mut stretches = Vec::new();
     let is_drive = |at: &MissionMove| matches!(at, MissionMove::Drive);
     let mut first = 0;
@@ -49,14 +53,22 @@ pub(super) fn stretches(search: &TravelSearch, path: &MissionPath) -> Result<Vec
         let count = path.moves[first..].iter().take_while(|next| is_drive(next) == kind).count();
         let places = &path.places[first..=first + count];
         let moves = &path.moves[first..first + count];
-        stretches.push(if kind { Stretch::Drive(driven(search, places)?) } else { Stretch::Hops(flown(search, places, moves)?) });
+        stretches.push(if kind {
+            Stretch::Drive(driven(search, places)?)
+        } else {
+            Stretch::Hops(flown(search, (places, moves), commands)?)
+        });
         first += count;
     }
     Ok(stretches)
 }
 
 /// Hops, flown again over their unrolled chain and over the DEM.
-fn flown(search: &TravelSearch, places: &[MapPosition], moves: &[MissionMove]) -> Result<HopPath, JourneyError> {
+fn flown(
+    search: &TravelSearch,
+    (places, moves): (&[MapPosition], &[MissionMove]),
+    commands: SearchedCommands,
+) -> Result<HopPath, JourneyError> {
     let free = &search.free;
     let choices: Vec<TakeoffChoice> = moves
         .iter()
@@ -65,7 +77,7 @@ fn flown(search: &TravelSearch, places: &[MapPosition], moves: &[MissionMove]) -
             MissionMove::Drive => None,
         })
         .collect();
-    let chosen = (search.scenario().commands == SearchedCommands::Distinct).then_some(choices.as_slice());
+    let chosen = (commands == SearchedCommands::Distinct).then_some(choices.as_slice());
     let laid: Laid = free.laid_over(places, chosen)?;
     let Unrolled { path, .. } = free.flown(laid)?;
     path.ok_or(FreeRouteError::Lost { hop: 1 }.into())
