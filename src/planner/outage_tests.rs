@@ -256,5 +256,5 @@ fn routes_and_missions_under_outages_are_those_of_all_sequences_of_hops() {
         without += u32::from(free.is_some_and(|(most, _)| most > visited));
     }
     let counts = format!("{whole} whole, {some} in part, {around} other ways, {without} fewer targets");
-    assert!(whole > 20 && some > 5 && around > 20 && without > 20, "{counts}");
+    assert!(whole > 20 && some > 5 && around > 10 && without > 20, "{counts}");
 }

@@ -24,8 +24,8 @@ fn desk() -> Desk {
     desk
 }
 
-const fn is_shaded(col: usize, y: usize) -> bool {
-    13 <= col && col <= 27 && 4 <= y && y <= 16
+fn is_shaded(col: usize, y: usize) -> bool {
+    (13..=27).contains(&col) && (4..=16).contains(&y)
 }
 
 fn in_shade(at: [f64; 2]) -> bool {
@@ -130,7 +130,7 @@ fn a_mission_into_the_shade_and_out_again_keeps_its_outage() {
 #[test]
 fn the_least_speed_with_so_much_time_in_the_shade_is_found() {
     let desk = desk();
-    let words = ["--from", "1.5", "--to", "3.5", "--resolution", "0.1", "--mission-time-max-s", "4000"];
+    let words = ["--from", "1.5", "--to", "3.5", "--resolution", "0.25"];
     let required = |more: &str| {
         let sun = set(more);
         let ran = ["require", "targets.toml", "--vary", "hopper.takeoff_speed_max_m_s", "--set", &sun];
