@@ -36,7 +36,7 @@ impl ChainLayers {
     /// The layers under a chain of these vertices, of which each has a place on the map.
     pub(crate) fn under(layers: &MapLayers, vertices: &[ChainPoint], map: &[MapPoint]) -> Self {
         let of = |counts: fn(&LayerRule) -> bool| {
-            let counted = layers.iter().filter(|layer| counts(layer.rule()));
+            let counted = layers.iter().filter(|layer| layer.rule().outage.is_none() && counts(layer.rule()));
             let refused = counted.map(|layer| Refused { layer: layer.rule().name, stretches: stretches(layer, vertices, map) });
             refused.filter(|refused| !refused.stretches.is_empty()).collect()
         };

@@ -52,7 +52,7 @@ impl Budgets {
     pub const NONE: Self = Self { most: [f64::INFINITY; Amount::COUNT] };
 
     /// A total may exceed its budget by this share, as a speed may exceed its limit: sums in another order differ by less.
-    const TOLERANCE: f64 = 1e-9;
+    pub(super) const TOLERANCE: f64 = 1e-9;
 
     /// The same with a greatest total of one amount; the smaller one where it has one already.
     ///

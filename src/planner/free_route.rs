@@ -4,12 +4,15 @@
 //! objective ([`search`]). Where hops come first, paths of the fewest hops are compared layer by layer instead ([`best_of_fewest`]).
 
 use super::{
-    Amount, Amounts, Budgets, LabelCap, Objective, SearchedCommands, SurfaceNode, SurfaceNodes, TooManyNodes, UnmetBudget,
+    Amount, Amounts, Budgets, LabelCap, Objective, OutagePart, SearchedCommands, SurfaceNode, SurfaceNodes, TooManyNodes,
+    UnmetBudget,
     by_layers::best_of_fewest,
     fewest_hops::{FewestHops, Within},
     front,
+    labels::Tracked,
+    outage::Outages,
     route_gap::RouteGap,
-    search::{search, without_budgets},
+    search::{search_tracked, without_budgets},
     surface_hops::{Side, SurfaceHops},
     surface_legs::{Counted, LegOffers, Settling, SurfaceLegs},
 };
@@ -94,9 +97,10 @@ pub struct RouteWork {
 /// The result of a search, and its work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeRoute {
-    /// The best path within the budgets, or the best without budgets, if no path keeps them; `None` if the goal was not reached over these nodes.
+    /// The best path within the budgets and the outages of layers, or the best without them, if no path keeps them; `None` if the goal was not
+    /// reached over these nodes.
     pub path: Option<RoutePath>,
-    /// Whether it keeps the budgets.
+    /// Whether it keeps the budgets and the outages.
     pub within: bool,
     /// If not: those that it exceeds. If the least of each is within it, no path keeps all of them at once.
     pub unmet: Vec<UnmetBudget>,
@@ -152,7 +156,9 @@ pub fn free_route_by(
 ) -> Result<FreeRoute, RouteError> {
     let mut asked = Asked::new(ground, nodes, goal, progress)?;
     loop {
-        let levels = asked.hops_left(hops_within(question.budgets))?;
+        // A path that keeps out of the shade may need any number of hops.
+        let whole = (!asked.outages.are_none()).then_some(u64::MAX);
+        let levels = asked.hops_left(hops_within(question.budgets).or(whole))?;
         let Some(fewest) = levels.of(asked.start.0) else { return asked.not_found(&levels) };
         let (route, hops) = asked.found(&levels, fewest, question)?;
         // The fast walk equals the slice up to rounding: a hop on the very edge of a limit may be one for the walk alone.
@@ -225,6 +231,8 @@ struct Asked<'a> {
     goal: (SurfaceNode, MapPosition),
     how: &'a RouteGoal,
     bounds: PathBounds,
+    /// The layers that may be left for a while.
+    outages: Outages,
     meter: Meter<'a>,
     /// Pairs of the searches before.
     pairs: u64,
@@ -245,7 +253,8 @@ impl<'a> Asked<'a> {
         let (start, goal) = (node(how.start)?, node(how.goal)?);
         let limits = ground.hopper().limits();
         let bounds = PathBounds::new(limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s(), ground.gravity_m_s2());
-        Ok(Self { surface, start, goal, how, bounds, meter: Meter::new(progress, Stage::Search), pairs: 0 })
+        let outages = Outages::of(ground, vec![how.goal]);
+        Ok(Self { surface, start, goal, how, bounds, outages, meter: Meter::new(progress, Stage::Search), pairs: 0 })
     }
 
     /// The fewest hops to the goal of all nodes on paths of at most so many hops; without a number, of the fewest that there are.
@@ -296,16 +305,19 @@ impl<'a> Asked<'a> {
         let RouteQuestion { objective, budgets, cap, .. } = *question;
         let most = hops_within(budgets);
         let allows_fewest = most.is_none_or(|most| most >= u64::from(fewest));
-        let hops_decide = objective.first() == Amount::Hops && budgets.all().all(|(amount, _)| amount == Amount::Hops);
+        let in_outages = !self.outages.are_none();
+        let of_hops = objective.first() == Amount::Hops && budgets.all().all(|(amount, _)| amount == Amount::Hops);
+        let hops_decide = of_hops && !in_outages;
         let (mut work, mut capped) = (RouteWork { pairs_tested: self.pairs, leading: levels.known, ..RouteWork::default() }, false);
         let mut best = None;
         if allows_fewest {
-            let counted = if hops_decide || most.is_some() { Counted::Known } else { Counted::All };
-            let legs = self.legs((levels, counted), question);
+            let counted = if hops_decide || in_outages || most.is_some() { Counted::Known } else { Counted::All };
+            let legs = self.legs((levels, counted), question).under(&self.outages, true);
             let result = if hops_decide {
                 best_of_fewest(&legs, levels, (objective, cap), &self.meter)?
             } else {
-                search(&legs, legs.ends(), objective, budgets, cap)?
+                let tracked = Tracked::new(objective, budgets).under(self.outages.most(), OutagePart::HELD);
+                search_tracked(&legs, legs.ends(), tracked, cap)?
             };
             (work.reached, work.settled, capped) = (result.reached, result.settled, result.capped);
             work.pairs_tested += legs.pairs();
@@ -317,7 +329,7 @@ impl<'a> Asked<'a> {
             let found = without_budgets(&legs, legs.ends(), objective, budgets, cap)?;
             work.pairs_tested += legs.pairs();
             if let Some(found) = found {
-                within = found.within;
+                within = found.within && !in_outages;
                 capped |= found.capped;
                 (work.reached, work.settled) = found.work;
                 best = Some((legs.route_path(&found.path, self.how.effort), found.path, found.unmet));

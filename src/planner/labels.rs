@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::{Amount, Amounts, Budgets, Objective};
+use super::{Amount, Amounts, Budgets, Objective, OutagePart, Stretch};
 
 /// No label, or the end of a list.
 pub(super) const NONE: u32 = u32::MAX;
@@ -17,6 +17,10 @@ pub(super) struct Tracked {
     compared: Vec<usize>,
     /// The greatest total of each; infinite without one.
     allowed: Vec<f64>,
+    /// The longest stretches outside the layers that may be left for a while.
+    outages: Vec<Stretch>,
+    /// What paths begin with: a path that follows another one may begin in a stretch.
+    begins: OutagePart,
 }
 
 impl Tracked {
@@ -41,7 +45,44 @@ impl Tracked {
         let allowed: Vec<f64> = amounts.iter().map(|amount| budgets.allowed(*amount)).collect();
         // A label that is no worse by the objective has no more of its first amount; a greatest speed within its budget stays there.
         let compared = (1..amounts.len()).filter(|&i| allowed[i].is_finite() && amounts[i].adds_up()).collect();
-        Self { objective: objective.len(), amounts, compared, allowed }
+        Self { objective: objective.len(), amounts, compared, allowed, outages: Vec::new(), begins: OutagePart::HELD }
+    }
+
+    /// The same for paths with stretches no longer than these outside the conditions of layers.
+    pub(super) fn under(self, outages: Vec<Stretch>, begins: OutagePart) -> Self {
+        Self { outages, begins, ..self }
+    }
+
+    /// Whether stretches outside the conditions of layers count.
+    pub(super) const fn has_outages(&self) -> bool {
+        !self.outages.is_empty()
+    }
+
+    /// How many numbers a label has: the amounts, and what it keeps of each outage.
+    pub(super) const fn width(&self) -> usize {
+        self.amounts.len() + OutagePart::WIDTH * self.outages.len()
+    }
+
+    /// What a label keeps of an outage.
+    pub(super) fn outage_of(&self, totals: &[f64], layer: usize) -> OutagePart {
+        OutagePart::of_kept(&totals[self.amounts.len() + OutagePart::WIDTH * layer..][..OutagePart::WIDTH])
+    }
+
+    /// Writes into `totals` what a path of these numbers keeps of every outage after one more part; false if a stretch gets too long.
+    pub(super) fn go_outside(&self, before: &[f64], totals: &mut [f64], part: &dyn Fn(usize) -> OutagePart) -> bool {
+        let kept = totals[self.amounts.len()..].chunks_exact_mut(OutagePart::WIDTH);
+        kept.zip(&self.outages).enumerate().all(|(layer, (kept, most))| {
+            let joined = self.outage_of(before, layer).then(&part(layer), *most);
+            joined.map(|joined| kept.copy_from_slice(&joined.kept())).is_some()
+        })
+    }
+
+    /// The same for paths of which one of the amounts is at most so much: others are left out, but labels are not compared by it.
+    pub(super) fn at_most(mut self, amount: Amount, most: f64) -> Self {
+        for (_, allowed) in self.amounts.iter().zip(&mut self.allowed).filter(|(known, _)| **known == amount) {
+            *allowed = allowed.min(most * (1.0 + Budgets::TOLERANCE));
+        }
+        self
     }
 
     /// How many amounts they are.
@@ -120,8 +161,13 @@ impl Labels {
 
     /// The tracked amounts of a label.
     pub(super) fn totals(&self, label: u32) -> &[f64] {
-        let width = self.tracked.len();
+        let width = self.tracked.width();
         &self.totals[label as usize * width..][..width]
+    }
+
+    /// What a label keeps of an outage.
+    pub(super) fn outage(&self, label: u32, layer: usize) -> OutagePart {
+        self.tracked.outage_of(self.totals(label), layer)
     }
 
     /// The labels of a node that count.
@@ -185,18 +231,20 @@ impl Labels {
     /// it is cheap. Where labels are compared by more than the objective it is never certain.
     #[inline]
     pub(super) fn node_is_ahead(&self, node: usize, label: u32, leg: &Amounts) -> bool {
-        let (width, first) = (self.tracked.len(), self.tracked.amounts[0]);
+        let (width, first) = (self.tracked.width(), self.tracked.amounts[0]);
         let known = self.heads[node];
         self.tracked.compared.is_empty()
+            && !self.tracked.has_outages()
             && known != NONE
             && self.totals[known as usize * width] < first.join(self.totals[label as usize * width], leg.of(first))
     }
 
-    /// The tracked amounts of a path with one more leg.
+    /// The tracked amounts of a path with one more leg, and the least of what it may keep of outages.
     pub(super) fn extended(&self, label: u32, leg: &Amounts, out: &mut Vec<f64>) {
         out.clear();
         let joined = |(amount, total): (&Amount, &f64)| amount.join(*total, leg.of(*amount));
         out.extend(self.tracked.amounts.iter().zip(self.totals(label)).map(joined));
+        out.resize(self.tracked.width(), 0.0);
     }
 }
 
@@ -216,12 +264,14 @@ impl Tracked {
             }
             out.push(whole);
         }
+        out.resize(self.width(), 0.0);
         true
     }
 
-    /// Amounts of no path.
+    /// What the labels of a path without legs have.
     pub(super) fn zeros(&self) -> Vec<f64> {
-        vec![0.0; self.len()]
+        let amounts = std::iter::repeat_n(0.0, self.amounts.len());
+        amounts.chain(self.outages.iter().flat_map(|_| self.begins.kept())).collect()
     }
 
     /// What the queue compares: the objective, filled up with zeros.
@@ -236,6 +286,7 @@ impl Tracked {
 fn dominates(tracked: &Tracked, first: &[f64], second: &[f64]) -> bool {
     by_objective(&first[..tracked.objective], &second[..tracked.objective]) != Ordering::Greater
         && tracked.compared.iter().all(|&i| first[i] <= second[i])
+        && first[tracked.amounts.len()..].iter().zip(&second[tracked.amounts.len()..]).all(|(first, second)| first <= second)
 }
 
 /// The order by the objective.

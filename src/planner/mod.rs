@@ -27,6 +27,7 @@ mod lattice;
 mod nearest_steps;
 mod nodes;
 mod objective;
+mod outage;
 mod pair_memo;
 pub mod roadmap;
 mod route_gap;
@@ -49,6 +50,7 @@ pub use front::front;
 pub use lattice::{NODES_PER_POST_MOST, NodesPerPost, SurfaceLattice};
 pub use nodes::{SurfaceNode, SurfaceNodes, TooManyNodes};
 pub use objective::{Objective, ObjectiveProblem};
+pub use outage::{OutagePart, Stretch};
 pub use route_gap::RouteGap;
 pub use search::{FoundPath, LabelCap, LegGraph, LegVisitor, PathStep, SearchResult, Successor, UnmetBudget, search};
 pub use stances::{RefusedStances, StanceSampler};
@@ -60,6 +62,8 @@ pub use travel::{
     travel, travel_field,
 };
 
+#[cfg(test)]
+mod outage_tests;
 #[cfg(test)]
 mod surface_tests;
 #[cfg(test)]

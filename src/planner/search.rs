@@ -7,7 +7,7 @@
 use std::{cmp::Ordering, collections::BinaryHeap};
 
 use super::{
-    Amount, Amounts, Budgets, Objective, OverBudget,
+    Amount, Amounts, Budgets, Objective, OutagePart, OverBudget,
     labels::{Labels, NONE, Origin, Tracked, by_objective},
 };
 use crate::progress::Cancelled;
@@ -28,6 +28,11 @@ pub trait LegGraph {
     /// What no path from a node to the goal takes less of: for every amount no more than a leg and what is left after it. Zeros are such
     /// bounds.
     fn least_to_goal(&self, node: usize) -> Amounts;
+
+    /// How a leg out of a node is outside the condition of one of the layers that may be left for a while, for a search under them.
+    fn outage(&self, _from: usize, _leg: &Successor, _layer: usize) -> OutagePart {
+        OutagePart::HELD
+    }
 }
 
 /// What is done with the legs out of a node.
@@ -155,7 +160,17 @@ pub fn search(
     budgets: &Budgets,
     cap: LabelCap,
 ) -> Result<SearchResult, Cancelled> {
-    let mut run = Run::new(graph, (start, goal), Tracked::new(objective, budgets), cap);
+    search_tracked(graph, (start, goal), Tracked::new(objective, budgets), cap)
+}
+
+/// The same for what labels keep.
+pub(super) fn search_tracked(
+    graph: &impl LegGraph,
+    (start, goal): (usize, usize),
+    tracked: Tracked,
+    cap: LabelCap,
+) -> Result<SearchResult, Cancelled> {
+    let mut run = Run::new(graph, (start, goal), tracked, cap);
     let best = run.until(true)?;
     let path = best.map(|label| run.path(label)).transpose()?;
     Ok(SearchResult {
@@ -203,6 +218,17 @@ impl<G: LegGraph> Settled<'_, G> {
         // A path that takes at least as much of everything as one that is known is not better.
         labels.tracked.with_rest(totals, &self.graph.least_to_goal(node), whole) && !labels.node_dominates(self.goal, whole)
     }
+
+    /// Whether no stretch outside the condition of a layer gets too long with a leg; leaves in the scratch what is kept of them.
+    fn keeps_outages(&mut self, leg: &Successor) -> bool {
+        let labels = &*self.labels;
+        if !labels.tracked.has_outages() {
+            return true;
+        }
+        let from = labels.origin(self.label).node as usize;
+        let part = |layer: usize| self.graph.outage(from, leg, layer);
+        labels.tracked.go_outside(labels.totals(self.label), &mut self.scratch.totals, &part)
+    }
 }
 
 impl<G: LegGraph> LegVisitor for Settled<'_, G> {
@@ -223,7 +249,7 @@ impl<G: LegGraph> LegVisitor for Settled<'_, G> {
             return;
         }
         self.labels.extended(self.label, &leg.amounts, &mut self.scratch.totals);
-        if !self.leads_on(leg.node) {
+        if !self.leads_on(leg.node) || !self.keeps_outages(leg) {
             return;
         }
         let origin = Origin { node: number(leg.node), before: self.label, command: leg.command };

@@ -6,8 +6,10 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::{
-    Amount, Amounts, FoundPath, LeastAmounts, LegGraph, LegVisitor, PathStep, RoutePath, SearchedCommands, Successor, SurfaceNode,
+    Amount, Amounts, FoundPath, LeastAmounts, LegGraph, LegVisitor, OutagePart, PathStep, RoutePath, SearchedCommands, Successor,
+    SurfaceNode,
     fewest_hops::FewestHops,
+    outage::Outages,
     pair_memo::PairMemo,
     surface_hops::{Feasible, Side, SurfaceHops},
     table_hops::TableHops,
@@ -90,6 +92,8 @@ pub struct SurfaceLegs<'a> {
     /// The fewest hops from nodes to the goal.
     hops_left: &'a FewestHops,
     counted: Counted,
+    /// The layers that may be left for a while, and whether paths end at the goal, so that no outage goes on from there.
+    outages: Option<(&'a Outages, bool)>,
     counter: RefCell<PairCounter<'a>>,
     pairs: RefCell<u64>,
 }
@@ -322,12 +326,36 @@ impl<'a> SurfaceLegs<'a> {
         (hops_left, counted): (&'a FewestHops, Counted),
         meter: &'a Meter<'_>,
     ) -> Self {
-        Self { offers, start, goal, hops_left, counted, counter: RefCell::new(meter.counter()), pairs: RefCell::new(0) }
+        Self {
+            offers,
+            start,
+            goal,
+            hops_left,
+            counted,
+            outages: None,
+            counter: RefCell::new(meter.counter()),
+            pairs: RefCell::new(0),
+        }
+    }
+
+    /// The same under layers that may be left for a while. `ends`: whether paths end at the goal.
+    pub(super) fn under(self, outages: &'a Outages, ends: bool) -> Self {
+        Self { outages: Some((outages, ends)), ..self }
     }
 
     /// Start and goal.
     pub(super) const fn ends(&self) -> (usize, usize) {
         (self.start.index(), self.goal.0.index())
+    }
+
+    /// What paths from the start take at least that have more hops than the fewest. `is_first`: whether the first hop begins the mission.
+    pub(super) fn least_in_more_hops(&self, is_first: bool) -> Amounts {
+        let offers = &self.offers;
+        let (Some(at), Some(fewest)) = (offers.surface.position(self.start), self.hops_left.of(self.start)) else {
+            return Amounts::NONE;
+        };
+        let run_m = libm::hypot(self.goal.1.at.x - at.at.x, self.goal.1.at.y - at.at.y);
+        offers.settled(&offers.least.over_in(run_m, self.goal.1.z_m - at.z_m, u64::from(fewest) + 1), is_first)
     }
 
     /// Pairs of nodes whose hop was computed.
@@ -388,5 +416,13 @@ impl LegGraph for SurfaceLegs<'_> {
         let goal = &self.goal.1;
         let run_m = libm::hypot(goal.at.x - at.at.x, goal.at.y - at.at.y);
         self.offers.least.over_in(run_m, goal.z_m - at.z_m, self.hops_left.of(node).map_or(0, u64::from))
+    }
+
+    fn outage(&self, from: usize, leg: &Successor, layer: usize) -> OutagePart {
+        let [from, to] = [from, leg.node].map(|node| self.offers.surface.position(SurfaceNode::of_index(node)));
+        let (Some((outages, ends)), Some(from), Some(to)) = (self.outages, from, to) else { return OutagePart::HELD };
+        let flight_s = leg.amounts.of(Amount::FlightTime);
+        let rest_s = (leg.amounts.of(Amount::MissionTime) - flight_s).max(0.0);
+        outages.of_hop(layer, [from.at, to.at], (rest_s, flight_s), !(ends && leg.node == self.goal.0.index()))
     }
 }

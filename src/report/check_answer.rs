@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     derating_record::DeratingRecord, hop_answer::BindingRecord, limit_counts::LimitCounts, objective_record::ObjectiveRecord,
-    proof_record::ProofRecord, propellant_record::PropellantShortage, route_record::RouteRecord,
+    outage_record::OutageRecord, proof_record::ProofRecord, propellant_record::PropellantShortage, route_record::RouteRecord,
     success_record::SuccessBudgetRecord,
 };
 use crate::{
@@ -64,6 +64,10 @@ pub struct CheckAnswer {
     /// `no-path-found`.
     #[serde(flatten)]
     pub objective: Option<ObjectiveRecord>,
+    /// Of a free route under layers that may be left for a while: the longest outage of each; if one is too long, the verdict is
+    /// `no-path-found`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outages: Vec<OutageRecord>,
     /// The shares of the limits that this answer, a proof and all margins are for; absent if they are for the whole limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derating: Option<DeratingRecord>,
@@ -219,6 +223,7 @@ impl CheckAnswer {
             propellant_shortage: None,
             success_budget: None,
             objective: None,
+            outages: Vec::new(),
             derating: None,
             commands_refusal: None,
             landing_miss_max_m: None,
@@ -280,6 +285,18 @@ impl CheckAnswer {
         if met { self } else { self.open() }
     }
 
+    /// Adds the longest outages of the path. One that is too long answers no, which nothing proves: paths over other nodes may keep it.
+    #[must_use]
+    pub fn with_outages(mut self, outages: Vec<OutageRecord>) -> Self {
+        self.outages = outages;
+        if self.keeps_outages() { self } else { self.open() }
+    }
+
+    /// Whether the path is outside the condition of no layer for too long.
+    pub fn keeps_outages(&self) -> bool {
+        self.outages.iter().all(|outage| outage.met)
+    }
+
     /// Adds the shares of the limits that it is for.
     #[must_use]
     pub const fn with_derating(mut self, derating: Option<DeratingRecord>) -> Self {
@@ -304,6 +321,7 @@ impl CheckAnswer {
             && self.commands_refusal.is_none()
             && is_reliable
             && self.objective.as_ref().is_none_or(ObjectiveRecord::is_met)
+            && self.keeps_outages()
     }
 }
 

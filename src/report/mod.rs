@@ -25,6 +25,7 @@ mod mesh_map_answer;
 mod mesh_plan_answer;
 mod mesh_simulate_answer;
 mod objective_record;
+mod outage_record;
 mod path_record;
 mod plan_answer;
 mod proof_record;
@@ -92,6 +93,7 @@ pub use mesh_plan_answer::{
 };
 pub use mesh_simulate_answer::{MeshSimulateAnswer, mesh_simulate_text};
 pub use objective_record::{AmountRecord, BudgetRecord, ObjectiveRecord};
+pub use outage_record::OutageRecord;
 pub use path_record::{
     AimRecord, EnergyBasis, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv,
 };

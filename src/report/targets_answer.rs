@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    DeratingRecord, HopRecord, MapKnowledge, ObjectiveRecord, PropellantShortage, RouteGapRecord, SimulationRecord,
+    DeratingRecord, HopRecord, MapKnowledge, ObjectiveRecord, OutageRecord, PropellantShortage, RouteGapRecord, SimulationRecord,
     SuccessRequirement, TotalsRecord, write_path_csv,
 };
 use crate::{
@@ -38,6 +38,10 @@ pub struct TargetsAnswer {
     /// What the mission was planned for, and what it takes of its budgets.
     #[serde(flatten)]
     pub objective: ObjectiveRecord,
+    /// Under layers that may be left for a while: the longest outage of each over the whole mission; if one is too long, the verdict is
+    /// `no-path-found`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outages: Vec<OutageRecord>,
     /// The shares of the limits that this answer and all margins are for; absent if they are for the whole limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derating: Option<DeratingRecord>,
@@ -94,13 +98,15 @@ pub enum WhyRecord {
     NoWayBack,
     /// No order of legs over these nodes visits it together with those that are visited.
     NotTogether,
+    /// The mission would be outside the condition of a layer for too long.
+    Outages,
     /// The mission would exceed the budgets.
     Budgets,
 }
 
 impl WhyRecord {
     /// All reasons.
-    pub const ALL: [Self; 4] = [Self::NotReached, Self::NoWayBack, Self::NotTogether, Self::Budgets];
+    pub const ALL: [Self; 5] = [Self::NotReached, Self::NoWayBack, Self::NotTogether, Self::Outages, Self::Budgets];
 
     /// The name in results.
     pub const fn name(self) -> &'static str {
@@ -108,6 +114,7 @@ impl WhyRecord {
             Self::NotReached => "not-reached",
             Self::NoWayBack => "no-way-back",
             Self::NotTogether => "not-together",
+            Self::Outages => "outages",
             Self::Budgets => "budgets",
         }
     }

@@ -37,6 +37,9 @@ pub fn targets_text(answer: &TargetsAnswer, means: FurtherMeans<'_>) -> String {
     for sentence in answer.objective.sentences() {
         sheet.line(format_args!("{sentence}"));
     }
+    for outage in &answer.outages {
+        sheet.line(format_args!("{}", outage.sentence()));
+    }
     let search = &answer.search;
     sheet.line(format_args!(
         "over {} nodes at most {} m apart; {} legs between stops, pairs of nodes tested: {}",
@@ -71,6 +74,10 @@ fn left_out_lines(sheet: &mut Sheet, target: usize, why: &LeftOutRecord, means: 
         WhyRecord::NoWayBack => "from it the start is not reached over these nodes".to_owned(),
         WhyRecord::NotTogether => {
             "it is reached, but no order of legs over these nodes visits it together with those that are visited".to_owned()
+        }
+        WhyRecord::Outages => {
+            "every mission over these nodes that visits it beside those visited is outside the condition of a layer for too long"
+                .to_owned()
         }
         WhyRecord::Budgets => {
             let over = |row: &OverBudgetRecord| {

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::{
-    BestRecord, BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ObjectiveRecord, ProofRecord, TotalsRecord,
-    WindowRecord,
+    BestRecord, BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ObjectiveRecord, OutageRecord, ProofRecord,
+    TotalsRecord, WindowRecord,
     limit_counts::LimitCounts,
     propellant_record::{delta_v_field, stores_lines},
 };
@@ -276,7 +276,8 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
     if let Some(budget) = &answer.success_budget {
         sheet.line(format_args!("{}", budget.sentence()));
     }
-    for sentence in answer.objective.iter().flat_map(ObjectiveRecord::sentences) {
+    let of_objective = answer.objective.iter().flat_map(ObjectiveRecord::sentences);
+    for sentence in of_objective.chain(answer.outages.iter().map(OutageRecord::sentence)) {
         sheet.line(format_args!("{sentence}"));
     }
     if let Some(refusal) = &answer.commands_refusal {

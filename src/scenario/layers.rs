@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use serde_json::{Map, Value};
 
-use super::{Entries, ProblemKind, TerrainSource, values::number};
+use super::{Entries, ProblemKind, Route, TerrainSource, values::number};
 use crate::{
-    terrain::{LayerCondition, LayerRule},
+    terrain::{LayerCondition, LayerRule, OutageLimit},
     world::LayerName,
 };
 
@@ -20,7 +20,7 @@ pub struct LayerKeys {
 }
 
 /// The keys of a layer with their meanings.
-pub(super) const LAYER_KEYS: [(&str, &str); 5] = [
+pub(super) const LAYER_KEYS: [(&str, &str); 8] = [
     ("raster", "raster on the terrain's map, path from this file"),
     ("min", "the layer holds where the raster's value is at least this"),
     ("max", "the layer holds where the raster's value is at most this"),
@@ -29,6 +29,12 @@ pub(super) const LAYER_KEYS: [(&str, &str); 5] = [
         "applies_to",
         "contact: take-offs, landings and driven ground; flight: all ground flown over; or a list of both; absent: contact",
     ),
+    (
+        "outage_max_s",
+        "on a free route of hops: the longest time in which the layer may not hold, at a stretch, s; absent: it always holds",
+    ),
+    ("outage_hops_max", "the same as a number of hops, those into the stretch and out of it included"),
+    ("exempt_targets", "whether the layer counts as holding at contacts with the goal or targets; absent: false"),
 ];
 
 /// The words of `applies_to`.
@@ -112,20 +118,91 @@ fn layer(name: &str, table: &toml::Table) -> Result<LayerKeys, (String, String)>
             APPLIES_TO.map(|word| words.contains(&Some(word)))
         }
     };
-    Ok(LayerKeys { rule: LayerRule { name: known, condition, on_contact, on_flight }, raster })
+    let outage = outage(name, table, &meaning)?;
+    Ok(LayerKeys { rule: LayerRule { name: known, condition, on_contact, on_flight, outage }, raster })
+}
+
+impl Entries {
+    /// Forgets the layers that may be left for a while: where hops are judged each by itself, they refuse none.
+    ///
+    /// # Returns
+    /// Their names.
+    pub fn forget_layers_with_outages(&mut self) -> Vec<String> {
+        let is_left =
+            |table: &toml::Table| ["outage_max_s", "outage_hops_max", "exempt_targets"].iter().any(|key| table.contains_key(*key));
+        let mut names = self.names_in("layer");
+        names.retain(|name| self.value("layer", name).and_then(toml::Value::as_table).is_some_and(is_left));
+        for name in &names {
+            self.forget("layer", name);
+        }
+        names
+    }
+}
+
+/// For how long a layer may be left; `None` without a key of it.
+fn outage(name: &str, table: &toml::Table, meaning: &dyn Fn(&str) -> String) -> Result<Option<OutageLimit>, (String, String)> {
+    let max_s =
+        match table.get("outage_max_s").map(|value| (value, number(value).filter(|time_s| *time_s >= 0.0 && time_s.is_finite()))) {
+            Some((value, None)) => {
+                let message = format!("layer.{name}.outage_max_s is {value}, expected a number of at least 0");
+                return Err((message, meaning("outage_max_s")));
+            }
+            Some((_, time_s)) => time_s,
+            None => None,
+        };
+    let hops_max =
+        match table.get("outage_hops_max").map(|value| (value, value.as_integer().and_then(|hops| u32::try_from(hops).ok()))) {
+            Some((value, None)) => {
+                let message = format!("layer.{name}.outage_hops_max is {value}, expected a whole number of at least 0");
+                return Err((message, meaning("outage_hops_max")));
+            }
+            Some((_, hops)) => hops,
+            None => None,
+        };
+    let exempt_targets = match table.get("exempt_targets").map(|value| (value, value.as_bool())) {
+        Some((value, None)) => {
+            let message = format!("layer.{name}.exempt_targets is {value}, expected true or false");
+            return Err((message, meaning("exempt_targets")));
+        }
+        Some((_, exempt)) => exempt.unwrap_or(false),
+        None => false,
+    };
+    let limit = OutageLimit { max_s, hops_max, exempt_targets };
+    Ok((limit != OutageLimit::default()).then_some(limit))
+}
+
+/// Refuses layers that may be left for a while where paths are no free routes of hops alone.
+pub(super) fn check_outages(entries: &mut Entries, layers: &[LayerKeys], route: Route, drives: bool) {
+    for layer in layers.iter().filter(|layer| layer.rule.outage.is_some() && (route != Route::Free || drives)) {
+        let name = layer.rule.name;
+        let found = if drives { "[drive] has wheels" } else { "terrain.route is \"transect\"" };
+        let message = format!("layer.{name} may be left for a while, which counts along free routes of hops alone, but {found}");
+        let help = if drives {
+            "remove [drive], or the keys of the outage"
+        } else {
+            "set terrain.route = \"free\", or remove the keys of the outage"
+        };
+        entries.problem(("layer", name.name()), ProblemKind::Misplaced, message, help);
+    }
 }
 
 /// The layers as a document that reads back.
 pub(super) fn document(layers: &[LayerKeys], named: &dyn Fn(&std::path::Path) -> String) -> Value {
     let of = |layer: &LayerKeys| {
-        let LayerRule { name, condition, on_contact, on_flight } = layer.rule;
+        let LayerRule { name, condition, on_contact, on_flight, outage } = layer.rule;
         let numbers = [("min", condition.min), ("max", condition.max), ("equals", condition.equals)];
         let applies_to = match (on_contact, on_flight) {
             (true, true) => Value::from(APPLIES_TO.to_vec()),
             (true, false) => APPLIES_TO[0].into(),
             (false, _) => APPLIES_TO[1].into(),
         };
-        let keys = [("raster", Some(Value::from(named(&layer.raster)))), ("applies_to", Some(applies_to))];
+        let keys = [
+            ("raster", Some(Value::from(named(&layer.raster)))),
+            ("applies_to", Some(applies_to)),
+            ("outage_max_s", outage.and_then(|limit| limit.max_s).map(Value::from)),
+            ("outage_hops_max", outage.and_then(|limit| limit.hops_max).map(Value::from)),
+            ("exempt_targets", outage.filter(|limit| limit.exempt_targets).map(|_| Value::from(true))),
+        ];
         let stated = numbers.into_iter().map(|(key, number)| (key, number.map(Value::from))).chain(keys);
         let stated: Map<_, _> = stated.filter_map(|(key, value)| Some((key.to_owned(), value?))).collect();
         (name.name().to_owned(), Value::Object(stated))
@@ -135,7 +212,10 @@ pub(super) fn document(layers: &[LayerKeys], named: &dyn Fn(&std::path::Path) ->
 
 #[cfg(test)]
 mod tests {
-    use crate::scenario::{Entries, Scenario, scenario_document};
+    use crate::{
+        scenario::{Entries, Scenario, scenario_document},
+        terrain::OutageLimit,
+    };
 
     const HEAD: &str = "[body]\nname = \"moon\"\n[terrain]\ndem = \"x.tif\"\nstart_m = [0, 0]\ngoal_m = [1, 1]\n";
 
@@ -150,6 +230,10 @@ mod tests {
             ("[layer.sun]\nraster = \"a.tif\"\nmin = 2\nequals = 1", ["equals beside min", "remove one"]),
             ("[layer.sun]\nraster = \"a.tif\"\nmin = 2\napplies_to = \"hop\"", ["applies_to is \"hop\"", "contact"]),
             ("[layer.sun]\nraster = \"a.tif\"\nmin = 2\napplies_to = []", ["applies_to is []", "contact"]),
+            ("[layer.sun]\nraster = \"a.tif\"\nmin = 2\noutage_max_s = -1", ["outage_max_s is -1", "at a stretch"]),
+            ("[layer.sun]\nraster = \"a.tif\"\nmin = 2\noutage_hops_max = 1.5", ["outage_hops_max is 1.5", "into the stretch"]),
+            ("[layer.sun]\nraster = \"a.tif\"\nmin = 2\nexempt_targets = 1", ["exempt_targets is 1", "counts as holding"]),
+            ("[layer.sun]\nraster = \"a.tif\"\nmin = 2\noutage_max_s = 9", ["free routes of hops alone", "route = \"free\""]),
             ("[layer.\"s n\"]\nraster = \"a.tif\"\nmin = 2", ["a limit cannot have", "rename"]),
             ("[layer]\nsun = 3", ["layer.NAME is 3", "raster"]),
         ] {
@@ -169,12 +253,22 @@ mod tests {
         entries.set("--set", "layer.sun.max=0.75");
         entries.set("--set", "layer.sun.applies_to=flight");
         entries.set("--set", "layer.hazard={ raster = \"c.tif\", max = 1 }");
+        entries.set("--set", "terrain.route=free");
+        entries.set("--set", "layer.sun.outage_max_s=1200");
+        entries.set("--set", "layer.sun.outage_hops_max=3");
+        entries.set("--set", "layer.link.exempt_targets=true");
         let scenario = Scenario::new(entries).unwrap();
         let names: Vec<&str> = scenario.layers.iter().map(|layer| layer.rule.name.name()).collect();
         assert_eq!(names, ["hazard", "link", "sun"]);
         let sun = scenario.layers[2].rule;
         assert_eq!((sun.condition.min, sun.condition.max, sun.on_contact, sun.on_flight), (Some(0.25), Some(0.75), false, true));
         assert!(scenario.layers[1].rule.on_contact && scenario.layers[1].rule.on_flight);
+        let limit = |number: usize| scenario.layers[number].rule.outage;
+        assert_eq!(limit(0), None);
+        assert_eq!(limit(1), Some(OutageLimit { max_s: None, hops_max: None, exempt_targets: true }));
+        assert_eq!(limit(2), Some(OutageLimit { max_s: Some(1200.0), hops_max: Some(3), exempt_targets: false }));
+        // Targets alone are exempt: nowhere else may the layer be left.
+        assert_eq!(limit(1).map(|limit| (limit.most_s(), limit.most_hops())), Some((f64::INFINITY, 0.0)));
         let document = scenario_document(&scenario, &|path| path.to_string_lossy().into_owned());
         assert_eq!(Scenario::from_document(&document).as_ref(), Ok(&scenario));
     }

@@ -134,6 +134,7 @@ impl Scenario {
         let derating = super::derating::derating(&mut entries, &hopper, &surface);
         let drive = super::drive::drive(&mut entries, terrain.as_ref(), route, hopper.limits());
         let drives = drive.as_ref().is_some_and(|keys| keys.travel.drives());
+        super::layers::check_outages(&mut entries, &layers, route, drives);
         let mission = super::mission::mission(&mut entries, terrain.as_ref(), route, drives);
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
         let budget = super::budget::budget(&entries);

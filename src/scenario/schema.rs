@@ -86,6 +86,9 @@ fn of_kind(kind: Kind) -> Value {
                         let word = json!({ "enum": APPLIES_TO });
                         json!({ "anyOf": [word, { "type": "array", "items": word, "minItems": 1 }] })
                     }
+                    "outage_max_s" => json!({ "type": "number", "minimum": 0 }),
+                    "outage_hops_max" => json!({ "type": "integer", "minimum": 0 }),
+                    "exempt_targets" => of_kind(Kind::Flag),
                     _ => json!({ "type": "number" }),
                 };
                 value["description"] = meaning.into();

@@ -99,6 +99,17 @@ pub enum CaseError {
         /// What is wanted, with its verb.
         question: &'static str,
     },
+    /// A question that does not count how long layers are left.
+    #[error(
+        "{question}, which does not count how long the condition of a layer is unmet, and layer.{layer} may be left for a while: remove \
+         its outage_max_s, outage_hops_max and exempt_targets"
+    )]
+    Outage {
+        /// The layer.
+        layer: crate::world::LayerName,
+        /// What is wanted, with its verb.
+        question: &'static str,
+    },
     /// A question about targets without any.
     #[error("found no [mission], expected mission.targets_m")]
     NoTargets,

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use nalgebra::Vector2;
 
-use super::{Extremes, Overlays, PipelineError, coarse_dem_warning, constant_gravity_warnings, dem_on_body};
+use super::{
+    Extremes, Overlays, PipelineError, coarse_dem_warning, constant_gravity_warnings, dem_on_body, free_route::outages_not_counted,
+};
 use crate::{
     graph::PointSpacing,
     ground::DemGround,
@@ -161,6 +163,7 @@ impl PreparedFan {
         #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
         let range_m = bands.filter_map(|band| Some(band.to_m / band.hops.filter(|hops| *hops > 0)? as f64)).fold(0.0, f64::max);
         warnings.extend(constant_gravity_warnings(&question.scenario.body, Extremes { range_m, ..Extremes::default() }));
+        warnings.extend(outages_not_counted(question.scenario));
         warnings.extend(DeratingRecord::of(&question.scenario.derating).map(|derating| derating.sentence()));
         let mut answer = FanAnswer::new(self.from, question.length_m, &rays, self.projection.as_ref().ok());
         match self.spacing {

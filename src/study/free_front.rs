@@ -2,7 +2,7 @@
 
 use super::{
     Case, JourneyError,
-    free_route::FreeSearch,
+    free_route::{FreeSearch, without_outages},
     front::{amount_row, are_alike, front_commands, front_hops_max},
 };
 use crate::{
@@ -20,6 +20,7 @@ pub(super) fn free_front(
     amount: Amount,
     progress: &dyn Progress,
 ) -> Result<(Vec<FrontRecord>, FrontSearchRecord), JourneyError> {
+    without_outages(&case.scenario, "a front is made of paths by two amounts")?;
     let search = FreeSearch::of(case)?;
     let scenario = &search.case.scenario;
     let (commands, takeoff) = front_commands(scenario);

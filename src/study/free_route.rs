@@ -18,16 +18,16 @@ use crate::{
     graph::{self, Edge, Leg, NodeSet, Outcome, PointSpacing, RefusalCounts, ReliabilityUse, SearchError},
     ground::{ContactPoint, DemGround, MapPosition, Surface},
     hop::HopTest,
-    path::{Execution, Hop, HopPath, execute},
+    path::{Execution, Hop, HopPath, execute, longest_outage},
     planner::{
         Amount, Budgets, FreeRoute, LabelCap, Objective, RouteError, RouteGap, RouteGoal, RoutePath, RouteQuestion,
         SearchedCommands, SurfaceLattice, SurfaceNodes, free_route_by,
     },
     progress::Progress,
     quantity::{MapPoint, VertexId},
-    report::{CheckAnswer, DeratingRecord, ObjectiveRecord, RouteGapRecord, RouteKind, RouteRecord},
+    report::{CheckAnswer, DeratingRecord, ObjectiveRecord, OutageRecord, RouteGapRecord, RouteKind, RouteRecord},
     scenario::{Route, Scenario, TerrainSource},
-    terrain::{MapPlace, TerrainError},
+    terrain::{Layer, MapPlace, TerrainError},
 };
 
 /// Why a free route has no answer.
@@ -137,6 +137,29 @@ pub(super) fn hops_alone(scenario: &Scenario, question: &'static str) -> Result<
     if scenario.drives().is_some() { Err(CaseError::HopsOnly { question }) } else { Ok(()) }
 }
 
+/// Refuses a scenario with layers that may be left for a while.
+///
+/// # Errors
+/// [`CaseError::Outage`].
+pub(super) fn without_outages(scenario: &Scenario, question: &'static str) -> Result<(), CaseError> {
+    let found = scenario.layers.iter().find(|layer| layer.rule.outage.is_some());
+    found.map_or(Ok(()), |layer| Err(CaseError::Outage { layer: layer.rule.name, question }))
+}
+
+/// What is to be known where hops are judged each by itself: layers that may be left for a while do not refuse them.
+pub(super) fn outages_not_counted(scenario: &Scenario) -> impl Iterator<Item = String> + '_ {
+    scenario.layers.iter().filter(|layer| layer.rule.outage.is_some()).map(|layer| {
+        let name = layer.rule.name;
+        format!("layer.{name} may be left for a while, which counts along whole paths: it refuses no hop by itself")
+    })
+}
+
+/// Of a stop that refuses every contact: which layer does not hold there.
+pub(super) fn refused_stop(ground: &DemGround, name: &str, at: MapPoint) -> Option<String> {
+    let layer = ground.layers().refusing_contact(at)?;
+    Some(format!("layer {layer} does not hold at {name}, so that no hop begins or ends there"))
+}
+
 /// Refuses a scenario that visits several targets.
 ///
 /// # Errors
@@ -159,6 +182,8 @@ pub(super) struct FreeSearch {
     pub(super) budgets: Budgets,
     /// How many labels it may keep.
     pub(super) cap: LabelCap,
+    /// Where layers that exempt targets count as met.
+    pub(super) exempt: Vec<MapPoint>,
 }
 
 /// Chooses nodes for a case over its ground, with start and goal.
@@ -189,7 +214,8 @@ impl FreeSearch {
         let goal = RouteGoal { start, goal, effort: search.effort, takeoff: search.takeoff };
         let (objective, budgets) = (case.scenario.full_objective(), case.scenario.total_budgets());
         let cap = RouteSize::of(&ground, &nodes, &objective, &budgets).cap(case.memory_max_bytes)?;
-        Ok(Self { case, ground, nodes, goal, ends, objective, budgets, cap })
+        let exempt = vec![goal.goal];
+        Ok(Self { case, ground, nodes, goal, ends, objective, budgets, cap, exempt })
     }
 
     /// What it takes at most.
@@ -244,6 +270,16 @@ impl FreeSearch {
         Ok(Unrolled { case, test, legs, ends, path: flown })
     }
 
+    /// The longest outages of a path, of every layer that may be left for a while.
+    pub(super) fn outages(&self, path: &HopPath) -> Vec<OutageRecord> {
+        let hopper = self.case.scenario.hopper.limits();
+        let record = |layer: &Layer| {
+            let limit = layer.rule().outage?;
+            Some(OutageRecord::new(&longest_outage(path, hopper, layer, &self.exempt), &limit))
+        };
+        self.ground.layers().iter().filter_map(record).collect()
+    }
+
     /// What the answer says of the objective, for a scenario that plans by one.
     fn objective_record(&self, route: &FreeRoute) -> Option<ObjectiveRecord> {
         let scenario = &self.case.scenario;
@@ -258,6 +294,8 @@ impl FreeSearch {
         let scenario = &self.case.scenario;
         let mut warnings = left_out(scenario);
         warnings.extend(coarse_nodes(level_hop_m(&self.ground), "the free route", self.nodes.lattice().spacing_m()));
+        let ends = [("the start", self.goal.start), ("the goal", self.goal.goal)];
+        warnings.extend(ends.iter().filter(|_| path.is_none()).filter_map(|(name, at)| refused_stop(&self.ground, name, *at)));
         if scenario.plans_by_objective() {
             #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
             let spanned =
@@ -305,7 +343,8 @@ impl FreeSearch {
         let Unrolled { case: unrolled, test, legs, ends, path } = self.flown(laid)?;
         warnings.extend(path.iter().flat_map(|path| case.scenario.path_warnings(path)));
         let found = answer(Outcome::Path { legs, cost });
-        let check = checked(&test, &ends, &found).with_path(path.as_ref());
+        let outages = path.as_ref().map_or_else(Vec::new, |path| self.outages(path));
+        let check = checked(&test, &ends, &found).with_path(path.as_ref()).with_outages(outages);
         Ok(FoundRoute { test, ends, found, check, path, warnings, case: unrolled })
     }
 }

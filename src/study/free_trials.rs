@@ -4,10 +4,10 @@ use super::{
     Case, FreeRouteError, JourneyError,
     dem_ground::dem_ground,
     free_route::{FoundRoute, FreeSearch, Laid, hops_alone, one_goal},
-    front::{FlownJourney, RELIABLE},
+    front::{Flown, FlownJourney, RELIABLE},
     journey::Searched,
     objective::reliability,
-    to_go::ToGo,
+    to_go::{Replanning, ToGo},
 };
 use crate::{
     ballistics::Arc,
@@ -44,6 +44,7 @@ struct Estimated {
     route: FoundRoute,
     success: f64,
     to_go: Option<ToGo>,
+    replanning: Option<Replanning>,
 }
 
 /// The free route of a case, by hops and effort or by its objective; where the scenario weighs reliability or has a budget of success, with what
@@ -87,10 +88,11 @@ pub(super) fn with_success(
     let enough = least.map_or(RELIABLE, |least| least.min(RELIABLE));
     let looks_on = weighs && has_hops && best.success < enough;
     let mut is_other = false;
-    let others = if looks_on { reliable_places(&best.route, progress)? } else { Vec::new() };
+    let others = if looks_on { reliable_places(&best, progress)? } else { Vec::new() };
     for places in &others {
         let Some(other) = other_route(search, route, places)? else { continue };
-        if scenario.risk == ReliabilityUse::FewestHops && other.found.hops() != hops {
+        let is_unwanted = scenario.risk == ReliabilityUse::FewestHops && other.found.hops() != hops;
+        if is_unwanted || !other.check.keeps_outages() {
             continue;
         }
         let other = estimated(other, progress)?;
@@ -98,7 +100,7 @@ pub(super) fn with_success(
             (best, is_other) = (other, true);
         }
     }
-    let Estimated { mut route, success, to_go } = best;
+    let Estimated { mut route, success, to_go, .. } = best;
     if route.found.hops() != hops {
         route.warnings.push(format!(
             "this path is the most reliable one over places beside the route of fewest hops, which has {} hops over these nodes and arrives less \
@@ -137,15 +139,16 @@ fn with_journey<T>(
 
 fn estimated(route: FoundRoute, progress: &dyn Progress) -> Result<Estimated, JourneyError> {
     let (Some(path), Some(keys)) = (&route.path, &route.case.scenario.uncertainty) else {
-        return Ok(Estimated { route, success: 0.0, to_go: None });
+        return Ok(Estimated { route, success: 0.0, to_go: None, replanning: None });
     };
-    let (success, to_go) = with_journey(&route, |journey| journey.success_of(&route.found, path, &keys.options(), progress))?;
-    Ok(Estimated { route, success, to_go })
+    let Flown { success, to_go, replanning } =
+        with_journey(&route, |journey| journey.success_of(&route.found, path, &keys.options(), progress))?;
+    Ok(Estimated { route, success, to_go, replanning })
 }
 
 /// The places of the most reliable routes about a route.
-fn reliable_places(route: &FoundRoute, progress: &dyn Progress) -> Result<Vec<Vec<MapPosition>>, JourneyError> {
-    with_journey(route, |journey| journey.reliable_places(&route.found, progress))
+fn reliable_places(of: &Estimated, progress: &dyn Progress) -> Result<Vec<Vec<MapPosition>>, JourneyError> {
+    with_journey(&of.route, |journey| journey.reliable_places(&of.route.found, of.replanning.as_ref(), progress))
 }
 
 /// The route over these places; `None` where one of its hops is not feasible by its slice, or it has no commands.

@@ -232,6 +232,16 @@ pub(super) struct FlownJourney<'a> {
     pub(super) ground: Option<&'a DemGround>,
 }
 
+/// What fixed trials of a path say.
+pub(super) struct Flown {
+    /// The share of them that reach the goal.
+    pub(super) success: f64,
+    /// What they replan by; `None` open loop.
+    pub(super) to_go: Option<ToGo>,
+    /// All that they could replan by.
+    pub(super) replanning: Option<Replanning>,
+}
+
 impl FlownJourney<'_> {
     /// The trials along a path; replanned by these costs, if there are any.
     pub(super) fn simulation(&self, path: &HopPath, to_go: Option<&ToGo>) -> Result<Simulation, SimulateError> {
@@ -317,14 +327,19 @@ impl FlownJourney<'_> {
 
     /// The most reliable paths over the nodes of an answer and places beside its line, by a closed form of the risk of each hop: one for each
     /// kind of places, as the places that it visits.
+    ///
+    /// `replanning`: what trials of the same answer replan by, which may have found them.
     pub(super) fn reliable_places(
         &self,
         found: &graph::Answer,
+        replanning: Option<&Replanning>,
         progress: &dyn Progress,
     ) -> Result<Vec<Vec<MapPosition>>, SimulateError> {
         let mut places = Vec::new();
         for beside in Beside::ALL {
-            places.extend(self.corridor(found, beside, progress)?.map(|corridor| corridor.path()));
+            let known = replanning.and_then(|replanning| replanning.beside[beside as usize].get());
+            let corridor = known.map_or_else(|| self.corridor(found, beside, progress), |known| Ok(known.clone()))?;
+            places.extend(corridor.map(|corridor| corridor.path()));
         }
         Ok(places)
     }
@@ -366,10 +381,11 @@ impl FlownJourney<'_> {
         path: &HopPath,
         options: &TrialOptions,
         progress: &dyn Progress,
-    ) -> Result<(f64, Option<ToGo>), SimulateError> {
+    ) -> Result<Flown, SimulateError> {
         let replans = options.policy == Policy::Replan;
         let replanning = replans.then(|| self.replanning(found, progress)).transpose()?;
-        self.flown((found, replanning.as_ref()), (path, found.hops()), options, progress)
+        let (success, to_go) = self.flown((found, replanning.as_ref()), (path, found.hops()), options, progress)?;
+        Ok(Flown { success, to_go, replanning })
     }
 
     /// What trials of the path of an answer replan by.
@@ -384,7 +400,7 @@ impl FlownJourney<'_> {
         if !has_choice {
             return Ok(Some(self.replanning(found, progress)?.along_line(found.hops())));
         }
-        Ok(self.success_of(found, path, &TrialOptions { policy: Policy::Replan, ..*options }, progress)?.1)
+        Ok(self.success_of(found, path, &TrialOptions { policy: Policy::Replan, ..*options }, progress)?.to_go)
     }
 
     /// Estimates the success of the paths of a front, and takes the one to fly: [`preferred_path`], or under a budget of success

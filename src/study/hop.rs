@@ -1,6 +1,6 @@
 //! One hop, limit by limit.
 
-use super::{Case, CaseError, Commands, Extremes, constant_gravity_warnings};
+use super::{Case, CaseError, Commands, Extremes, constant_gravity_warnings, free_route::outages_not_counted};
 use crate::{
     chain::Station,
     graph::{Edge, Leg},
@@ -54,6 +54,7 @@ pub fn hop(case: &Case) -> Result<Hopped, HopError> {
         speed_m_s: best.takeoff_speed_m_s.max(best.landing_speed_m_s),
     });
     let mut warnings = constant_gravity_warnings(&case.scenario.body, extremes);
+    warnings.extend(outages_not_counted(&case.scenario));
     warnings.extend(DeratingRecord::of(&case.scenario.derating).map(|derating| derating.sentence()));
     Ok(Hopped { case, test, ends: (takeoff, landing), answer, warnings })
 }

@@ -164,9 +164,11 @@ impl Searched {
         let known = of_front.or(self.flown).or_else(|| self.success.filter(|success| success.hops == hops)?.success_estimated);
         let ground = dem_ground(case).map_err(Box::new)?;
         let journey = FlownJourney { scenario, test, whole: case.whole_test(), ends, ground: ground.as_ref() };
-        let (success_estimated, to_go) = match known {
-            Some(share) => (share, None),
-            None => journey.success_of(&self.found, path, &keys.options(), progress).map_err(Box::new)?,
+        let (success_estimated, to_go) = if let Some(share) = known {
+            (share, None)
+        } else {
+            let flown = journey.success_of(&self.found, path, &keys.options(), progress).map_err(Box::new)?;
+            (flown.success, flown.to_go)
         };
         let success = SuccessEstimate { success_estimated, success_policy: keys.policy };
         let simulation = journey.simulation(path, None).map_err(Box::new)?;

@@ -60,8 +60,12 @@ impl JourneyPath {
     pub(super) fn hops(&self) -> Option<u64> {
         match self {
             Self::Travel(planned) => planned.answer.hops,
-            Self::Targets(planned) => planned.answer.hops.filter(|_| planned.tour.left_out.is_empty()),
-            Self::Transect(searched) | Self::Free(searched, ..) => searched.found.hops(),
+            Self::Targets(planned) => planned
+                .answer
+                .hops
+                .filter(|_| planned.tour.left_out.is_empty() && planned.answer.outages.iter().all(|outage| outage.met)),
+            Self::Free(searched, check, _) => searched.found.hops().filter(|_| check.keeps_outages()),
+            Self::Transect(searched) => searched.found.hops(),
         }
     }
 

@@ -164,6 +164,13 @@ impl Scenario {
             )
         }));
         warnings.extend(keys.warning().map(str::to_owned));
+        warnings.extend(self.layers.iter().filter(|layer| layer.rule.outage.is_some()).map(|layer| {
+            format!(
+                "trials do not count how long the condition of layer.{} is unmet: the plan keeps its outage, and a trial that goes other ways or \
+                 bounces may not",
+                layer.rule.name
+            )
+        }));
         warnings.extend(self.beyond_sense(ground));
         warnings
     }

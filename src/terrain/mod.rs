@@ -85,6 +85,6 @@ pub use walk::{FacetSpan, FacetWalk, Triangles};
 pub use window::{DemFile, Window};
 pub use xyz::read_xyz_bytes;
 pub use zones::{
-    FrictionRaster, KeepOut, Layer, LayerCondition, LayerRule, MapLayers, VectorFormat, read_friction_raster, read_keep_in,
-    read_keep_out, read_layer,
+    FrictionRaster, KeepOut, Layer, LayerCondition, LayerRule, MapLayers, OutageLimit, VectorFormat, read_friction_raster,
+    read_keep_in, read_keep_out, read_layer,
 };

@@ -37,6 +37,7 @@ mod mesh_map;
 mod mesh_plan;
 mod missing_data;
 mod objective;
+mod outages;
 mod picture_files;
 #[cfg(unix)]
 mod pipes;

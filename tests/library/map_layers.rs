@@ -32,7 +32,8 @@ fn layer(raster: &Dem, name: &str, [on_contact, on_flight]: [bool; 2]) -> Layer 
     let path = folder.path().join("layer.tif");
     write_geotiff(raster, std::fs::File::create(&path).unwrap()).unwrap();
     let condition = LayerCondition { min: Some(0.5), ..LayerCondition::default() };
-    read_layer(&path, LayerRule { name: LayerName::new(name).unwrap(), condition, on_contact, on_flight }, None).unwrap()
+    read_layer(&path, LayerRule { name: LayerName::new(name).unwrap(), condition, on_contact, on_flight, outage: None }, None)
+        .unwrap()
 }
 
 /// Zones that are the cells of the same raster where the layer does not hold.

@@ -46,7 +46,7 @@ impl<S: Surface> Checker<'_, S> {
         let (Some(layers), Some(from), Some(to)) = (self.surface.layers(), takeoff.map(), landing.map()) else { return };
         let place = |share: f64| from + (to - from) * share;
         let mut refused: Vec<(LayerName, f64)> = Vec::new();
-        for layer in layers.iter() {
+        for layer in layers.iter().filter(|layer| layer.rule().outage.is_none()) {
             let rule = layer.rule();
             let map = layer.raster().georeference();
             let cells = ((to.x - from.x) / map.dx_m()).abs() + ((to.y - from.y) / map.dy_m()).abs();

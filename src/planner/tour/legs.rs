@@ -4,17 +4,20 @@ use rayon::prelude::*;
 
 use super::{
     super::{
-        Amount, Budgets, FoundPath, OverBudget, RouteError, RoutePath, RouteQuestion, SurfaceNode, SurfaceNodes,
+        Amount, Budgets, FoundPath, LabelCap, Objective, OutagePart, RouteError, RoutePath, RouteQuestion, SurfaceNode,
+        SurfaceNodes,
         by_layers::best_of_fewest,
         fewest_hops::{FewestHops, Within},
         labels::Tracked,
+        outage::{Outages, Stretch},
         route_gap::RouteGap,
         search::Run,
         surface_hops::{Side, SurfaceHops},
         surface_legs::{Counted, LegOffers, Settling, SurfaceLegs},
     },
     Tour, TourLeg, TourQuestion, TourWork, VisitOrder, WhyLeftOut,
-    table::{LegCosts, VisitRules, Visits, most_visits},
+    table::{LegCosts, VisitRules, most_visits},
+    within::{WithinBudgets, best_within},
 };
 use crate::{
     ground::{DemGround, MapPosition},
@@ -26,35 +29,108 @@ use crate::{
 pub(super) struct StopLegs<'a> {
     surface: SurfaceHops<'a>,
     stops: Vec<(SurfaceNode, MapPosition)>,
+    /// The layers that may be left for a while.
+    outages: Outages,
     meter: Meter<'a>,
 }
 
-/// The ways of one leg, and the hops of each.
+/// A way of a leg.
+#[derive(Debug)]
+pub(super) struct Way {
+    pub(super) path: RoutePath,
+    hops: Vec<[SurfaceNode; 2]>,
+    /// How it is outside the conditions of the layers that may be left for a while.
+    outages: Vec<OutagePart>,
+}
+
+/// The ways of one leg.
 #[derive(Debug, Default)]
-struct Ways {
-    paths: Vec<(RoutePath, Vec<[SurfaceNode; 2]>)>,
+pub(super) struct Ways {
+    pub(super) paths: Vec<Way>,
     pairs: u64,
     capped: bool,
 }
 
-/// The legs between all stops.
-pub(super) struct AllLegs {
-    /// The fewest hops to each stop; `None` of a start that no leg leads to.
-    fields: Vec<Option<FewestHops>>,
-    ways: Vec<([usize; 2], Ways)>,
-    costs: LegCosts,
-    pairs: u64,
-    capped: bool,
-}
+/// The fewest hops to each stop; `None` of a start that no leg leads to.
+pub(super) struct Fields(Vec<Option<FewestHops>>);
 
-impl AllLegs {
-    /// Whether a path leads from one stop to another over these nodes, whatever it takes.
-    fn leads(&self, stops: &[(SurfaceNode, MapPosition)], [from, to]: [usize; 2]) -> bool {
-        self.fields[to].as_ref().is_some_and(|field| field.of(stops[from].0).is_some())
+impl Fields {
+    pub(super) fn to(&self, stop: usize) -> Option<&FewestHops> {
+        self.0[stop].as_ref()
     }
 
-    fn ways(&self, between: [usize; 2]) -> Option<&Ways> {
+    /// Pairs of nodes whose hop was computed.
+    fn pairs(&self) -> u64 {
+        self.0.iter().flatten().map(|field| field.pairs).sum()
+    }
+}
+
+/// What the ways of a leg are searched for.
+#[derive(Clone, Debug)]
+pub(super) struct LegQuestion<'q> {
+    pub(super) objective: &'q Objective,
+    /// Amounts of which no mission has more on this leg. Where one is another than the first of the objective, the leg has a Pareto set of ways.
+    pub(super) budgets: Budgets,
+    /// Totals of the objective above which a way is of no use.
+    pub(super) at_most: Vec<(Amount, f64)>,
+}
+
+impl<'q> LegQuestion<'q> {
+    /// The best way, whatever it takes.
+    pub(super) const fn best(objective: &'q Objective) -> Self {
+        Self { objective, budgets: Budgets::NONE, at_most: Vec::new() }
+    }
+}
+
+/// The ways of legs between stops.
+#[derive(Debug)]
+pub(super) struct Legs {
+    targets: usize,
+    ways: Vec<([usize; 2], Ways)>,
+    /// The longest stretches outside the conditions of layers.
+    outages: Vec<Stretch>,
+    pub(super) pairs: u64,
+    pub(super) capped: bool,
+}
+
+impl Legs {
+    pub(super) fn ways(&self, between: [usize; 2]) -> Option<&Ways> {
         self.ways.iter().find(|(known, _)| *known == between).map(|(_, ways)| ways)
+    }
+
+    /// What all ways take.
+    pub(super) fn costs(&self) -> LegCosts {
+        let mut costs = LegCosts::none(self.targets).under(self.outages.clone());
+        for (pair, ways) in &self.ways {
+            costs.set(*pair, ways.paths.iter().map(|way| way.path.totals).collect());
+            costs.set_outages(*pair, ways.paths.iter().map(|way| way.outages.clone()).collect());
+        }
+        costs
+    }
+
+    /// The least of an amount that the ways of a leg take; infinite without one.
+    pub(super) fn least(&self, amount: Amount) -> impl Fn([usize; 2]) -> f64 + '_ {
+        move |pair| {
+            let paths = self.ways(pair).into_iter().flat_map(|ways| &ways.paths);
+            paths.map(|way| way.path.totals.of(amount)).fold(f64::INFINITY, f64::min)
+        }
+    }
+
+    /// Adds the ways of the same legs that another search found.
+    pub(super) fn join(&mut self, others: Self) {
+        for (pair, ways) in others.ways {
+            match self.ways.iter_mut().find(|(known, _)| *known == pair) {
+                Some((_, known)) => known.paths.extend(ways.paths),
+                None => self.ways.push((pair, ways)),
+            }
+        }
+        self.pairs += others.pairs;
+        self.capped |= others.capped;
+    }
+
+    /// How many legs were searched.
+    pub(super) const fn count(&self) -> usize {
+        self.ways.len()
     }
 }
 
@@ -70,15 +146,16 @@ impl<'a> StopLegs<'a> {
             let node = nodes.place(*at).ok_or(RouteError::NoGround(*at))?;
             Ok((node, surface.position(node).ok_or(RouteError::NoGround(*at))?))
         };
+        let outages = Outages::of(ground, stops[1..].to_vec());
         let stops = stops.iter().map(stop).collect::<Result<_, RouteError>>()?;
-        Ok(Self { surface, stops, meter: Meter::new(progress, Stage::Search) })
+        Ok(Self { surface, stops, outages, meter: Meter::new(progress, Stage::Search) })
     }
 
     pub(super) fn refuse_wrong(&mut self, hops: Vec<[SurfaceNode; 2]>) -> bool {
         self.surface.refuse_wrong(hops)
     }
 
-    fn targets(&self) -> usize {
+    pub(super) fn targets(&self) -> usize {
         self.stops.len() - 1
     }
 
@@ -88,30 +165,40 @@ impl<'a> StopLegs<'a> {
         from != to && (to > 0 || question.returns) && is_in_order
     }
 
-    /// The field towards every stop, and what all legs take.
-    pub(super) fn all(&self, question: &TourQuestion<'_>) -> Result<AllLegs, RouteError> {
-        let count = self.stops.len();
-        let mut fields = Vec::with_capacity(count);
-        for to in 0..count {
-            let is_goal = to > 0 || question.returns;
-            fields.push(is_goal.then(|| self.field_to(to)).transpose()?);
-        }
-        let pairs = (0..count).flat_map(|from| (0..count).map(move |to| [from, to]));
-        let wanted: Vec<[usize; 2]> = pairs.filter(|pair| Self::is_wanted(question, *pair)).collect();
+    /// The fewest hops towards every stop.
+    pub(super) fn fields(&self, question: &TourQuestion<'_>) -> Result<Fields, Cancelled> {
+        let field = |to: usize| (to > 0 || question.returns).then(|| self.field_to(to)).transpose();
+        Ok(Fields((0..self.stops.len()).map(field).collect::<Result<_, _>>()?))
+    }
+
+    /// The ways of all legs that a mission may have, each by its own question; those without one are left out.
+    pub(super) fn legs<'q>(
+        &self,
+        question: &TourQuestion<'_>,
+        fields: &Fields,
+        of_leg: impl Fn([usize; 2]) -> Option<LegQuestion<'q>> + Sync,
+    ) -> Result<Legs, Cancelled> {
+        let wanted: Vec<[usize; 2]> = self.pairs().filter(|pair| Self::is_wanted(question, *pair)).collect();
         let between = |pair: &[usize; 2]| {
-            let field = fields[pair[1]].as_ref();
-            let ways = field.map(|field| self.ways_between(question, *pair, field)).transpose()?;
+            let asked = fields.to(pair[1]).zip(of_leg(*pair));
+            let ways = asked.map(|(field, asked)| self.ways_between(question, *pair, (field, &asked))).transpose()?;
             Ok((*pair, ways.unwrap_or_default()))
         };
         let ways: Vec<([usize; 2], Ways)> = wanted.par_iter().map(between).collect::<Result<_, Cancelled>>()?;
-        let mut costs = LegCosts::none(self.targets());
-        for (pair, ways) in &ways {
-            costs.set(*pair, ways.paths.iter().map(|(path, _)| path.totals).collect());
-        }
-        let of_fields: u64 = fields.iter().flatten().map(|field| field.pairs).sum();
-        let pairs = of_fields + ways.iter().map(|(_, ways)| ways.pairs).sum::<u64>();
+        let pairs = ways.iter().map(|(_, ways)| ways.pairs).sum();
         let capped = ways.iter().any(|(_, ways)| ways.capped);
-        Ok(AllLegs { fields, ways, costs, pairs, capped })
+        Ok(Legs { targets: self.targets(), ways, outages: self.outages.most(), pairs, capped })
+    }
+
+    /// All pairs of stops.
+    fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+        let count = self.stops.len();
+        (0..count).flat_map(move |from| (0..count).map(move |to| [from, to]))
+    }
+
+    /// Whether a path leads from one stop to another over these nodes, whatever it takes.
+    fn leads(&self, fields: &Fields, [from, to]: [usize; 2]) -> bool {
+        fields.to(to).is_some_and(|field| field.of(self.stops[from].0).is_some())
     }
 
     fn field_to(&self, to: usize) -> Result<FewestHops, Cancelled> {
@@ -120,89 +207,123 @@ impl<'a> StopLegs<'a> {
         FewestHops::from(&self.surface, (Side::Goal, self.stops[to].0), &within, &self.meter)
     }
 
-    /// The best ways from one stop to another: one, or a Pareto set where another amount than that of the objective has a budget.
-    fn ways_between(&self, question: &TourQuestion<'_>, [from, to]: [usize; 2], field: &FewestHops) -> Result<Ways, Cancelled> {
+    /// The best ways from one stop to another.
+    fn ways_between(
+        &self,
+        question: &TourQuestion<'_>,
+        [from, to]: [usize; 2],
+        (field, asked): (&FewestHops, &LegQuestion<'_>),
+    ) -> Result<Ways, Cancelled> {
         let (start, goal) = (self.stops[from].0, self.stops[to]);
         if field.of(start).is_none() {
             return Ok(Ways::default());
         }
-        let RouteQuestion { objective, budgets, commands, errors, cap } = question.route;
+        let LegQuestion { objective, budgets, at_most } = asked;
+        let RouteQuestion { commands, errors, cap, .. } = question.route;
         // A target is left by a hop that follows a landing, and a machine that begins has not landed.
         let settling = if from == 0 { Settling::BeforeAllBut(start) } else { Settling::BeforeAll };
-        let others: Vec<Amount> = budgets.all().map(|(amount, _)| amount).filter(|amount| *amount != objective.first()).collect();
-        let hops_decide = objective.first() == Amount::Hops && others.is_empty();
+        let by_first = budgets.all().all(|(amount, _)| amount == objective.first());
+        // A stretch outside may go on through a stop: what is left of it decides beside the objective.
+        let in_outages = !self.outages.are_none();
+        let goes_on = |stop: usize| stop > 0 && self.outages.any_outside(self.stops[stop].1.at);
+        let is_one = by_first && !(goes_on(from) || goes_on(to));
+        let hops_decide = objective.first() == Amount::Hops && by_first && !in_outages;
         let counted = if hops_decide { Counted::Known } else { Counted::All };
         let offers = LegOffers::new(&self.surface, settling, (commands, question.takeoff), errors);
-        let legs = SurfaceLegs::new(offers, (start, goal), (field, counted), &self.meter);
-        let (paths, capped): (Vec<FoundPath>, bool) = if hops_decide {
+        let legs = SurfaceLegs::new(offers, (start, goal), (field, counted), &self.meter).under(&self.outages, to == 0);
+        let is_alone = objective.amounts().len() == 1 && budgets.are_none() && !hops_decide && !in_outages;
+        let of_fewest = if is_alone { self.least_of_fewest((&legs, field), (objective.first(), cap))? } else { None };
+        let held = || vec![OutagePart::HELD; self.outages.most().len()];
+        let (paths, capped): (Vec<(FoundPath, Vec<OutagePart>)>, bool) = if hops_decide {
             let found = best_of_fewest(&legs, field, (objective, cap), &self.meter)?;
-            (found.path.into_iter().collect(), found.capped)
+            (found.path.into_iter().map(|path| (path, held())).collect(), found.capped)
+        } else if let Some((path, total)) = of_fewest.as_ref().map(|path| (path, path.totals.of(objective.first())))
+            && total <= legs.least_in_more_hops(from == 0).of(objective.first())
+        {
+            (vec![(path.clone(), held())], false)
         } else {
-            let mut run = Run::new(&legs, legs.ends(), Tracked::new(objective, budgets), cap);
-            let best = run.until(others.is_empty())?;
-            let labels = if others.is_empty() { best.into_iter().collect() } else { run.at_goal() };
-            let paths = labels.into_iter().map(|label| run.path(label)).collect::<Result<_, _>>()?;
+            let known = of_fewest.map(|path| (objective.first(), path.totals.of(objective.first())));
+            let bounds = at_most.iter().copied().chain(known);
+            let begins = if from == 0 { OutagePart::HELD } else { OutagePart::OPEN };
+            let tracked = Tracked::new(objective, budgets).under(self.outages.most(), begins);
+            let tracked = bounds.fold(tracked, |tracked, (amount, most)| tracked.at_most(amount, most));
+            let mut run = Run::new(&legs, legs.ends(), tracked, cap);
+            let best = run.until(is_one)?;
+            let labels = if is_one { best.into_iter().collect() } else { run.at_goal() };
+            let outages = |label: u32| (0..held().len()).map(|layer| run.labels.outage(label, layer)).collect();
+            let paths = labels.into_iter().map(|label| Ok((run.path(label)?, outages(label)))).collect::<Result<_, Cancelled>>()?;
             (paths, run.labels.capped)
         };
-        let way = |path: &FoundPath| (legs.route_path(path, question.effort), SurfaceLegs::hops_of(path).collect());
-        Ok(Ways { paths: paths.iter().map(way).collect(), pairs: legs.pairs(), capped })
+        let way = |(path, outages): (FoundPath, Vec<OutagePart>)| Way {
+            hops: SurfaceLegs::hops_of(&path).collect(),
+            path: legs.route_path(&path, question.effort),
+            outages,
+        };
+        Ok(Ways { paths: paths.into_iter().map(way).collect(), pairs: legs.pairs(), capped })
     }
 
-    /// The mission over these legs, and the hops that it depends on.
-    pub(super) fn best(&self, all: &AllLegs, question: &TourQuestion<'_>) -> Result<(Tour, Vec<[SurfaceNode; 2]>), RouteError> {
-        let RouteQuestion { objective, budgets, cap, .. } = question.route;
-        let rules = VisitRules { order: question.order, returns: question.returns, allowed: u16::MAX };
-        let (visits, capped) = most_visits(&all.costs, rules, (objective, budgets, cap))?;
+    /// The path that takes the least of an amount of those of the fewest hops. Where every hop waits for long it takes the least of all paths, and
+    /// else no path that takes more is of use.
+    fn least_of_fewest(
+        &self,
+        (legs, field): (&SurfaceLegs<'_>, &FewestHops),
+        (amount, cap): (Amount, LabelCap),
+    ) -> Result<Option<FoundPath>, Cancelled> {
+        let Some(objective) = Objective::new(vec![Amount::Hops, amount]).ok().filter(|_| amount.adds_up()) else { return Ok(None) };
+        Ok(best_of_fewest(legs, field, (&objective, cap), &self.meter)?.path)
+    }
+
+    /// The mission over these stops, and the hops that it depends on.
+    pub(super) fn best(&self, question: &TourQuestion<'_>) -> Result<(Tour, Vec<[SurfaceNode; 2]>), RouteError> {
+        let fields = self.fields(question)?;
+        let found = best_within(self, question, &fields)?;
         let mut hops = Vec::new();
         let mut legs = Vec::new();
-        for (ends, way) in visits.stops.windows(2).zip(&visits.ways) {
-            let Some((path, of_path)) = all.ways([ends[0], ends[1]]).and_then(|ways| ways.paths.get(*way)) else { continue };
+        for (ends, way) in found.visits.stops.windows(2).zip(&found.visits.ways) {
+            let way = found.legs.ways([ends[0], ends[1]]).and_then(|ways| ways.paths.get(*way));
+            let Some(Way { path, hops: of_path, .. }) = way else { continue };
             hops.extend(of_path);
             legs.push(TourLeg { from: ends[0], to: ends[1], path: path.clone() });
         }
         let mut tour = Tour {
             legs,
-            totals: visits.totals,
+            totals: found.visits.totals,
             left_out: Vec::new(),
-            capped: capped || all.capped,
-            work: TourWork { pairs_tested: all.pairs, legs_searched: all.ways.len() },
+            capped: found.capped,
+            work: TourWork { pairs_tested: fields.pairs() + found.legs.pairs, legs_searched: found.legs.count() },
         };
-        self.explain((all, &visits), question, &mut tour)?;
+        self.explain(&fields, &found, question, &mut tour)?;
         Ok((tour, hops))
     }
 
     /// Says of every target that is not visited why.
-    fn explain(&self, (all, visits): (&AllLegs, &Visits), question: &TourQuestion<'_>, tour: &mut Tour) -> Result<(), RouteError> {
-        let set = visits.set();
+    fn explain(
+        &self,
+        fields: &Fields,
+        found: &WithinBudgets,
+        question: &TourQuestion<'_>,
+        tour: &mut Tour,
+    ) -> Result<(), RouteError> {
+        let set = found.visits.set();
         let left_out: Vec<usize> = (1..=self.targets()).filter(|target| set & (1 << (target - 1)) == 0).collect();
-        let mut without_budgets: Option<AllLegs> = None;
         let mut reached = None;
         for target in left_out {
-            let why = if !all.leads(&self.stops, [0, target]) {
+            let why = if !self.leads(fields, [0, target]) {
                 let from_start = match &reached {
                     Some(known) => known,
                     None => reached.insert(self.reached_from_start()?),
                 };
                 tour.work.pairs_tested += from_start.pairs;
-                self.gap_to(target, all, from_start)?
-            } else if question.returns && !all.leads(&self.stops, [target, 0]) {
+                self.gap_to(target, fields, from_start)?
+            } else if question.returns && !self.leads(fields, [target, 0]) {
                 WhyLeftOut::NoWayBack
-            } else if !self.is_possible(all, question, set | (1 << (target - 1)))? {
+            } else if !self.is_possible(fields, question, set | (1 << (target - 1)))? {
                 WhyLeftOut::NotTogether
             } else {
-                let free =
-                    match &without_budgets {
-                        Some(known) => known,
-                        None => without_budgets.insert(self.all(&TourQuestion {
-                            route: RouteQuestion { budgets: &Budgets::NONE, ..question.route },
-                            ..*question
-                        })?),
-                    };
-                WhyLeftOut::Budgets(Self::over_budgets(free, question, set | (1 << (target - 1)))?)
+                Self::limits(&found.best, question, set | (1 << (target - 1)))?
             };
             tour.left_out.push((target, why));
         }
-        tour.work.pairs_tested += without_budgets.map_or(0, |free| free.pairs);
         Ok(())
     }
 
@@ -212,9 +333,9 @@ impl<'a> StopLegs<'a> {
     }
 
     /// What lies between the start and a target that it does not reach. The field of such a target has all nodes that lead to it.
-    fn gap_to(&self, target: usize, all: &AllLegs, reached: &FewestHops) -> Result<WhyLeftOut, RouteError> {
+    fn gap_to(&self, target: usize, fields: &Fields, reached: &FewestHops) -> Result<WhyLeftOut, RouteError> {
         let (start, goal) = (self.stops[0].1, self.stops[target].1);
-        let Some(leading) = &all.fields[target] else { return Ok(WhyLeftOut::NotTogether) };
+        let Some(leading) = fields.to(target) else { return Ok(WhyLeftOut::NotTogether) };
         let leads_from = leading.nearest(&self.surface, &start).unwrap_or(goal);
         let gap = RouteGap::between(&self.surface, (reached, leading), leads_from, &self.meter)?;
         let nearest = reached.nearest(&self.surface, &goal).unwrap_or(start);
@@ -222,10 +343,9 @@ impl<'a> StopLegs<'a> {
     }
 
     /// Whether some order of legs visits all targets of a set, whatever it takes.
-    fn is_possible(&self, all: &AllLegs, question: &TourQuestion<'_>, set: u16) -> Result<bool, Cancelled> {
+    fn is_possible(&self, fields: &Fields, question: &TourQuestion<'_>, set: u16) -> Result<bool, Cancelled> {
         let mut costs = LegCosts::none(self.targets());
-        let pairs = (0..self.stops.len()).flat_map(|from| (0..self.stops.len()).map(move |to| [from, to]));
-        for pair in pairs.filter(|pair| Self::is_wanted(question, *pair) && all.leads(&self.stops, *pair)) {
+        for pair in self.pairs().filter(|pair| Self::is_wanted(question, *pair) && self.leads(fields, *pair)) {
             costs.set(pair, vec![super::Amounts::NONE]);
         }
         let rules = VisitRules { order: question.order, returns: question.returns, allowed: set };
@@ -233,11 +353,15 @@ impl<'a> StopLegs<'a> {
         Ok(most_visits(&costs, rules, (objective, &Budgets::NONE, cap))?.0.set() == set)
     }
 
-    /// By how much the best mission over a set of targets exceeds the budgets.
-    fn over_budgets(free: &AllLegs, question: &TourQuestion<'_>, set: u16) -> Result<Vec<OverBudget>, Cancelled> {
+    /// Whether outages alone exclude all missions over a set of targets, or by how much the best one exceeds the budgets.
+    fn limits(best: &LegCosts, question: &TourQuestion<'_>, set: u16) -> Result<WhyLeftOut, Cancelled> {
         let RouteQuestion { objective, budgets, cap, .. } = question.route;
         let rules = VisitRules { order: question.order, returns: question.returns, allowed: set };
-        let (visits, _) = most_visits(&free.costs, rules, (objective, &Budgets::NONE, cap))?;
-        Ok(budgets.exceeded_by(&visits.totals).collect())
+        let (visits, _) = most_visits(best, rules, (objective, &Budgets::NONE, cap))?;
+        Ok(if visits.set() == set {
+            WhyLeftOut::Budgets(budgets.exceeded_by(&visits.totals).collect())
+        } else {
+            WhyLeftOut::Outages
+        })
     }
 }

@@ -6,13 +6,16 @@
 //!   the table of Held and Karp over these costs      ->  which targets, in which order, by which legs
 //! ```
 //!
-//! Where another amount than that of the objective has a budget, a leg has several ways, a Pareto set, and so has a state of the table.
+//! Where another amount than that of the objective has a budget, the best legs alone may keep it. Else a leg has several ways, a Pareto set of
+//! those that some mission within the budgets may have, and so has a state of the table.
 
+mod allowance;
 mod legs;
 mod order;
 mod table;
 #[cfg(test)]
 mod tests;
+mod within;
 
 use super::{Amounts, OverBudget, RouteError, RouteGap, RoutePath, RouteQuestion, SurfaceNodes};
 use crate::{
@@ -71,6 +74,8 @@ pub enum WhyLeftOut {
     NoWayBack,
     /// No order of legs over these nodes visits it together with those that are visited.
     NotTogether,
+    /// Every mission over it and those that are visited is outside the condition of a layer for too long.
+    Outages,
     /// The best mission over it and those that are visited takes more than the budgets.
     Budgets(Vec<OverBudget>),
 }
@@ -109,7 +114,8 @@ pub struct Tour {
 ///
 /// # Complexity
 /// For n targets n fields of fewest hops, each 4 bytes a node, one more with a return; and up to n^2 searches led by them, of which as many run
-/// at once as there are threads.
+/// at once as there are threads. Where the best legs exceed budgets on other amounts, as many searches for the least of each of these, and
+/// searches for Pareto sets for the legs of missions that may keep them.
 pub fn tour(
     ground: &DemGround,
     nodes: &SurfaceNodes,
@@ -119,8 +125,7 @@ pub fn tour(
 ) -> Result<Tour, RouteError> {
     let mut legs = legs::StopLegs::new(ground, nodes, stops, progress)?;
     loop {
-        let all = legs.all(question)?;
-        let (tour, hops) = legs.best(&all, question)?;
+        let (tour, hops) = legs.best(question)?;
         // The fast walk equals the slice up to rounding: a hop on the very edge of a limit may be one for the walk alone.
         if !legs.refuse_wrong(hops) {
             return Ok(tour);

@@ -1,6 +1,8 @@
 //! The table of Held and Karp (1962): the best way to have visited a set of targets, the last of them at a given one.
 
-use super::super::{Amount, Amounts, Budgets, FoundPath, LabelCap, LegGraph, LegVisitor, Objective, Successor};
+use super::super::{
+    Amount, Amounts, Budgets, FoundPath, LabelCap, LegGraph, LegVisitor, Objective, OutagePart, Stretch, Successor,
+};
 use super::{
     super::{
         labels::{Tracked, by_objective},
@@ -16,12 +18,27 @@ pub(super) struct LegCosts {
     targets: usize,
     /// By stop of departure, then of arrival; none where no leg leads.
     of: Vec<Vec<Amounts>>,
+    /// How each way is outside the conditions of layers that may be left for a while.
+    parts: Vec<Vec<Vec<OutagePart>>>,
+    /// The longest stretches outside them.
+    outages: Vec<Stretch>,
 }
 
 impl LegCosts {
     /// No legs between the start and so many targets.
     pub(super) fn none(targets: usize) -> Self {
-        Self { targets, of: vec![Vec::new(); (targets + 1) * (targets + 1)] }
+        let pairs = (targets + 1) * (targets + 1);
+        Self { targets, of: vec![Vec::new(); pairs], parts: vec![Vec::new(); pairs], outages: Vec::new() }
+    }
+
+    /// The same for missions with stretches no longer than these outside the conditions of layers.
+    pub(super) fn under(self, outages: Vec<Stretch>) -> Self {
+        Self { outages, ..self }
+    }
+
+    /// How the ways of a leg are outside them, each with a part for every layer.
+    pub(super) fn set_outages(&mut self, [from, to]: [usize; 2], parts: Vec<Vec<OutagePart>>) {
+        self.parts[from * (self.targets + 1) + to] = parts;
     }
 
     /// The ways of a leg.
@@ -143,6 +160,15 @@ impl LegGraph for Table<'_> {
     fn least_to_goal(&self, _: usize) -> Amounts {
         Amounts::NONE
     }
+
+    fn outage(&self, from: usize, leg: &Successor, layer: usize) -> OutagePart {
+        let [from, to] = [from, leg.node].map(|state| match self.state(state) {
+            State::Start | State::Home(_) => 0,
+            State::At(_, stop) => stop,
+        });
+        let ways = &self.costs.parts[from * (self.costs.targets + 1) + to];
+        ways.get(leg.command as usize).and_then(|parts| parts.get(layer)).copied().unwrap_or(OutagePart::HELD)
+    }
 }
 
 /// The mission that visits the most targets, of those the best by the objective, within budgets; without any target where none can be
@@ -160,7 +186,12 @@ pub(super) fn most_visits(
 ) -> Result<(Visits, bool), Cancelled> {
     debug_assert!(costs.targets <= TARGETS_MAX, "{} targets", costs.targets);
     let table = Table { costs, rules };
-    let mut run = Run::new(&table, (0, table.nodes() - 1), Tracked::new(objective, budgets), cap);
+    let mut run = Run::new(
+        &table,
+        (0, table.nodes() - 1),
+        Tracked::new(objective, budgets).under(costs.outages.clone(), OutagePart::HELD),
+        cap,
+    );
     run.until(false)?;
     let compared = objective.amounts().len();
     let mut best: Option<(u32, &[f64], u32)> = None;

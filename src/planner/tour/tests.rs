@@ -10,6 +10,7 @@ use super::{
         surface_hops::{Side, SurfaceHops},
         surface_legs::{LegOffers, Settling},
     },
+    allowance::OtherLegs,
     table::{LegCosts, VisitRules, most_visits},
     *,
 };
@@ -123,6 +124,67 @@ fn the_table_equals_all_orders_of_up_to_seven_targets() {
     assert!(whole > 60 && some > 30 && within > 60, "{whole} whole, {some} in part, {within} within budgets");
 }
 
+/// Every mission from a stop on, with its legs and how many targets it visits.
+fn missions(
+    (rules, targets): (VisitRules, usize),
+    (at, set): (usize, u16),
+    legs: &mut Vec<[usize; 2]>,
+    each: &mut dyn FnMut(&[[usize; 2]], u32),
+) {
+    if set != 0 && rules.returns {
+        legs.push([at, 0]);
+        each(legs, set.count_ones());
+        legs.pop();
+    } else if set != 0 {
+        each(legs, set.count_ones());
+    }
+    for to in 1..=targets {
+        let bit = 1 << (to - 1);
+        if set & bit == 0 && rules.allowed & bit != 0 && (rules.order == VisitOrder::Best || to > at) {
+            legs.push([at, to]);
+            missions((rules, targets), (to, set | bit), legs, each);
+            legs.pop();
+        }
+    }
+}
+
+#[test]
+fn what_is_left_to_a_leg_equals_all_missions() {
+    let draw = &mut Draw::seeded(2103);
+    let (mut left, mut without) = (0, 0);
+    for case in 0..200 {
+        let targets = 1 + draw.below(5);
+        let order = if draw.chance(0.3) { VisitOrder::Given } else { VisitOrder::Best };
+        let allowed = if draw.chance(0.3) { 0b01_0111 } else { u16::MAX };
+        let rules = VisitRules { order, returns: draw.chance(0.5), allowed };
+        let stops = targets + 1;
+        let number = |draw: &mut Draw| f64::from(u32::try_from(draw.below(30)).unwrap());
+        let least: Vec<f64> = (0..stops * stops).map(|_| if draw.chance(0.2) { f64::INFINITY } else { number(draw) }).collect();
+        let least = |[from, to]: [usize; 2]| least[from * stops + to];
+        let visited_min = 1 + u32::try_from(draw.below(targets)).unwrap();
+        let others = OtherLegs::of(&least, targets, rules, visited_min);
+        let mut expected = vec![f64::INFINITY; stops * stops];
+        missions((rules, targets), (0, 0), &mut Vec::new(), &mut |legs, visited| {
+            for (number, [from, to]) in legs.iter().enumerate().filter(|_| visited >= visited_min) {
+                let rest: f64 = legs.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, leg)| least(*leg)).sum();
+                let known = &mut expected[from * stops + to];
+                *known = known.min(rest);
+            }
+        });
+        for (from, to) in (0..stops).flat_map(|from| (0..stops).map(move |to| (from, to))) {
+            let total = 60.0;
+            let rest = expected[from * stops + to];
+            match others.allowance([from, to], total) {
+                Some(allowance) => assert!((allowance - (total - rest)).abs() < 1e-5, "case {case}, {from} to {to}: {allowance}"),
+                None => assert!(rest.is_infinite() || rest > total, "case {case}, {from} to {to}: {rest}"),
+            }
+            left += u32::from(rest <= total);
+            without += u32::from(rest > total && from != to);
+        }
+    }
+    assert!(left > 500 && without > 500, "{left} legs with something left, {without} without");
+}
+
 /// Three targets in a row: to the nearest first and on to the far ends costs the way between them twice.
 #[test]
 fn going_to_the_nearest_target_first_loses() {
@@ -201,7 +263,7 @@ impl LegGraph for Product<'_> {
 fn a_mission_equals_one_search_over_nodes_and_visited_sets() {
     let draw = &mut Draw::seeded(2102);
     let (mut whole, mut some, mut over) = (0, 0, 0);
-    for case in 0..60 {
+    for case in 0..90 {
         let ground = ground(draw, 5);
         let bounds = ground.terrain().dem().bounds();
         let count = 2 + draw.below(3);
@@ -217,17 +279,27 @@ fn a_mission_equals_one_search_over_nodes_and_visited_sets() {
             1 => Objective::of(Amount::Energy),
             _ => Objective::of(Amount::MissionTime),
         };
-        let budgets = match draw.below(3) {
-            0 => Budgets::NONE,
-            1 => Budgets::NONE.with(Amount::MissionTime, draw.uniform(4.0, 20.0)).unwrap(),
-            _ => Budgets::NONE.with(Amount::Energy, draw.uniform(8.0, 40.0)).unwrap(),
-        };
         let returns = draw.chance(0.4);
         let commands = SearchedCommands::Distinct;
-        let route = RouteQuestion { objective: &objective, budgets: &budgets, commands, errors: None, cap: LabelCap::default() };
         let takeoff = TakeoffChoice::LeastSpeed;
-        let question = TourQuestion { route, effort: Effort::TakeoffSpeed, takeoff, order: VisitOrder::Best, returns };
-        let found = tour(&ground, &nodes, &stops, &question, &()).unwrap();
+        let within = |budgets: &Budgets| {
+            let route = RouteQuestion { objective: &objective, budgets, commands, errors: None, cap: LabelCap::default() };
+            let question = TourQuestion { route, effort: Effort::TakeoffSpeed, takeoff, order: VisitOrder::Best, returns };
+            tour(&ground, &nodes, &stops, &question, &()).unwrap()
+        };
+        // Some budgets just below what the best mission takes without them.
+        let tight = |draw: &mut Draw, amount: Amount| {
+            let least = within(&Budgets::NONE).totals.of(amount);
+            Budgets::NONE.with(amount, least * draw.uniform(0.8, 1.0)).unwrap()
+        };
+        let budgets = match draw.below(5) {
+            0 => Budgets::NONE,
+            1 => Budgets::NONE.with(Amount::MissionTime, draw.uniform(4.0, 20.0)).unwrap(),
+            2 => Budgets::NONE.with(Amount::Energy, draw.uniform(8.0, 40.0)).unwrap(),
+            3 => tight(draw, Amount::MissionTime),
+            _ => tight(draw, Amount::Energy),
+        };
+        let found = within(&budgets);
 
         let surface = SurfaceHops::new(&ground, &nodes);
         let meter = Meter::new(&(), Stage::Search);

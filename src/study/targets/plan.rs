@@ -2,7 +2,7 @@
 
 use super::super::{
     Case, JourneyError,
-    free_route::{FoundRoute, Unrolled, gap_record, left_out, lower_bound},
+    free_route::{FoundRoute, Unrolled, gap_record, left_out, lower_bound, refused_stop},
     free_trials::with_success,
     nodes::{coarse_nodes, level_hop_m},
     to_go::ToGo,
@@ -156,6 +156,9 @@ fn warnings(search: &TargetsSearch, tour: &Tour, legs: &[FlownLeg], path: Option
     let mut warnings = left_out(scenario);
     let spacing_m = search.free.nodes.lattice().spacing_m();
     warnings.extend(coarse_nodes(level_hop_m(&search.free.ground), "the mission", spacing_m));
+    let is_left_out = |stop: usize| stop == 0 && legs.is_empty() || tour.left_out.iter().any(|(target, _)| *target == stop);
+    let stops = search.stops.iter().enumerate().filter(|(stop, _)| is_left_out(*stop));
+    warnings.extend(stops.filter_map(|(stop, at)| refused_stop(&search.free.ground, &stop_name(stop), *at)));
     if tour.capped {
         warnings.push(
             "the search left out labels because there were too many: the mission is not proved to be the best, and more targets may be possible"
@@ -179,8 +182,12 @@ fn warnings(search: &TargetsSearch, tour: &Tour, legs: &[FlownLeg], path: Option
 
 /// A leg in words.
 fn leg_name(leg: &TourLeg) -> String {
-    let name = |stop: usize| if stop == 0 { "the start".to_owned() } else { format!("target {stop}") };
-    format!("from {} to {}", name(leg.from), name(leg.to))
+    format!("from {} to {}", stop_name(leg.from), stop_name(leg.to))
+}
+
+/// A stop in words.
+fn stop_name(stop: usize) -> String {
+    if stop == 0 { "the start".to_owned() } else { format!("target {stop}") }
 }
 
 /// What a leg takes as it is flown. One that does not begin the mission begins with the time to settle.
@@ -198,7 +205,9 @@ fn answer(search: &TargetsSearch, tour: &Tour, legs: &[FlownLeg], path: Option<&
     let objective = path.map_or_else(|| objective.clone(), |path| objective.clone().flown(&path.amounts()));
     let propellant_shortage = path.and_then(|path| PropellantShortage::of(&path.totals));
     let is_whole = tour.left_out.is_empty();
-    let is_traversable = is_whole && propellant_shortage.is_none() && objective.is_met();
+    let outages = path.map_or_else(Vec::new, |path| free.outages(path));
+    let keeps_outages = outages.iter().all(|outage| outage.met);
+    let is_traversable = is_whole && propellant_shortage.is_none() && objective.is_met() && keeps_outages;
     let place = |at: MapPoint| free.ground.position(at).map_or([at.x, at.y, f64::NAN], |place| point(&place));
     let bound = |[from, to]: [usize; 2]| lower_bound(&free.ground, [stops[from], stops[to]]);
     let visits = visits(search, tour, legs);
@@ -221,6 +230,7 @@ fn answer(search: &TargetsSearch, tour: &Tour, legs: &[FlownLeg], path: Option<&
         hops: path.map(|path| path.hops.len() as u64),
         hops_lower_bound: fewest_hops_of_visits(&bound, stops.len() - 1, search.keys.order, search.keys.return_to_start),
         objective,
+        outages,
         derating: DeratingRecord::of(&scenario.derating),
         propellant_shortage,
         search: TargetsSearchRecord {
@@ -279,6 +289,7 @@ fn why_record(why: &WhyLeftOut, scenario: &Scenario) -> LeftOutRecord {
         },
         WhyLeftOut::NoWayBack => of(WhyRecord::NoWayBack),
         WhyLeftOut::NotTogether => of(WhyRecord::NotTogether),
+        WhyLeftOut::Outages => of(WhyRecord::Outages),
         WhyLeftOut::Budgets(over) => {
             let row =
                 |over: &crate::planner::OverBudget| OverBudgetRecord { amount: over.amount, total: over.total, max: over.most };

@@ -28,10 +28,11 @@ impl TargetsSearch {
         let keys = case.scenario.mission.clone().ok_or(CaseError::NoTargets)?;
         let targets = targets_on_map(case, &keys)?;
         // No slice between any two of them: in which order targets are listed changes no node.
-        let free = FreeSearch::over(case, &|case, ground, [start, _]| {
+        let mut free = FreeSearch::over(case, &|case, ground, [start, _]| {
             let places = std::iter::once(start).chain(targets.iter().copied());
             Ok(SurfaceNodes::new(ground, lattice(case, ground)?, places).map_err(RouteError::from)?)
         })?;
+        free.exempt.clone_from(&targets);
         let stops: Vec<MapPoint> = std::iter::once(free.goal.start).chain(targets.iter().copied()).collect();
         let name = |stop: usize| if stop == 0 { "the start".to_owned() } else { format!("target {stop}") };
         let same = (1..stops.len()).find_map(|second| Some((stops[..second].iter().position(|at| *at == stops[second])?, second)));

@@ -54,6 +54,38 @@ impl fmt::Display for LayerCondition {
     }
 }
 
+/// For how long the condition of a layer may be unmet at a stretch of a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OutageLimit {
+    /// The longest time, s: flights, rest and preparation.
+    pub max_s: Option<f64>,
+    /// The most hops, those into a stretch and out of it included.
+    pub hops_max: Option<u32>,
+    /// Whether the condition counts as met at contacts with targets.
+    pub exempt_targets: bool,
+}
+
+impl OutageLimit {
+    /// The longest time, s; infinite where hops alone are limited.
+    pub fn most_s(&self) -> f64 {
+        self.max_s.unwrap_or(f64::INFINITY)
+    }
+
+    /// The most hops; infinite where time alone is limited. Where neither is, no hop may be outside.
+    pub fn most_hops(&self) -> f64 {
+        match (self.hops_max, self.max_s) {
+            (Some(most), _) => f64::from(most),
+            (None, Some(_)) => f64::INFINITY,
+            (None, None) => 0.0,
+        }
+    }
+
+    /// The most hops, where they are limited.
+    pub fn hops_allowed(&self) -> Option<u64> {
+        self.hops_max.map(u64::from).or_else(|| self.max_s.is_none().then_some(0))
+    }
+}
+
 /// What a layer asks for, and of what.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayerRule {
@@ -65,6 +97,8 @@ pub struct LayerRule {
     pub on_contact: bool,
     /// Whether it has to hold under every point of a flight.
     pub on_flight: bool,
+    /// For how long it may be unmet: it then refuses no single hop, and counts along whole paths. `None`: it has to hold always.
+    pub outage: Option<OutageLimit>,
 }
 
 /// A raster on the terrain's map whose condition restricts contacts or flights.
@@ -95,7 +129,7 @@ pub struct Layer {
 /// let file = folder.path().join("sun.asc");
 /// std::fs::write(&file, "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n0.9 0.8 0.1\n0.9 0.7 0.6\n")?;
 /// let condition = LayerCondition { min: Some(0.3), ..LayerCondition::default() };
-/// let rule = LayerRule { name: LayerName::new("sun").unwrap(), condition, on_contact: true, on_flight: true };
+/// let rule = LayerRule { name: LayerName::new("sun").unwrap(), condition, on_contact: true, on_flight: true, outage: None };
 /// let sun = read_layer(&file, rule, None)?;
 /// // The shaded cell is x from 20 to 30, y from 10 to 20; its border belongs to it.
 /// let holds = [(19.9, 15.0), (20.0, 15.0), (25.0, 15.0), (25.0, 9.9), (31.0, 5.0)].map(|(x, y)| sun.holds_at(MapPoint::new(x, y)));
@@ -185,6 +219,19 @@ impl Layer {
             let within = track.shares(1, as_f64(row) - ON_A_BORDER, as_f64(row + 1) + ON_A_BORDER);
             within.0 > within.1 || cells_in(track.span(0, within), counts[0]).is_some_and(|cols| self.refused_in(row, &cols) == 0)
         })
+    }
+
+    /// Whether a contact at a place is outside the condition; never at the places `exempt`, where the layer exempts targets.
+    pub(crate) fn is_outside_at(&self, at: MapPoint, exempt: &[MapPoint]) -> bool {
+        let is_exempt = || self.rule.outage.is_some_and(|limit| limit.exempt_targets) && exempt.contains(&at);
+        self.rule.on_contact && !is_exempt() && !self.holds_at(at)
+    }
+
+    /// Whether the take-off, the flight and the landing of a hop are outside the condition. A flight is if either contact is, or by its track.
+    pub(crate) fn is_outside(&self, from: MapPoint, to: MapPoint, exempt: &[MapPoint]) -> [bool; 3] {
+        let [takeoff, landing] = [from, to].map(|at| self.is_outside_at(at, exempt));
+        let flight = takeoff || landing || (self.rule.on_flight && !self.holds_between(from, to));
+        [takeoff, flight, landing]
     }
 
     /// The parts of a straight line on the map where the condition does not hold, as shares of the way, in any order.
@@ -319,7 +366,13 @@ impl MapLayers {
         self.refusing(|rule| rule.on_contact, from, to)
     }
 
+    /// The layers that may be left for a while.
+    pub(crate) fn with_outages(&self) -> impl Iterator<Item = &Layer> {
+        self.0.iter().filter(|layer| layer.rule.outage.is_some())
+    }
+
     fn refusing(&self, counts: impl Fn(&LayerRule) -> bool, from: MapPoint, to: MapPoint) -> Option<LayerName> {
-        self.0.iter().find(|layer| counts(&layer.rule) && !layer.holds_between(from, to)).map(|layer| layer.rule.name)
+        let refuses = |layer: &&Layer| layer.rule.outage.is_none() && counts(&layer.rule) && !layer.holds_between(from, to);
+        self.0.iter().find(refuses).map(|layer| layer.rule.name)
     }
 }
