@@ -122,6 +122,23 @@ fn layer(name: &str, table: &toml::Table) -> Result<LayerKeys, (String, String)>
     Ok(LayerKeys { rule: LayerRule { name: known, condition, on_contact, on_flight, outage }, raster })
 }
 
+impl Entries {
+    /// Forgets the layers that may be left for a while: where hops are judged each by itself, they refuse none.
+    ///
+    /// # Returns
+    /// Their names.
+    pub fn forget_layers_with_outages(&mut self) -> Vec<String> {
+        let is_left =
+            |table: &toml::Table| ["outage_max_s", "outage_hops_max", "exempt_targets"].iter().any(|key| table.contains_key(*key));
+        let mut names = self.names_in("layer");
+        names.retain(|name| self.value("layer", name).and_then(toml::Value::as_table).is_some_and(is_left));
+        for name in &names {
+            self.forget("layer", name);
+        }
+        names
+    }
+}
+
 /// For how long a layer may be left; `None` without a key of it.
 fn outage(name: &str, table: &toml::Table, meaning: &dyn Fn(&str) -> String) -> Result<Option<OutageLimit>, (String, String)> {
     let max_s =

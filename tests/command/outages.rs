@@ -150,8 +150,8 @@ fn questions_of_single_hops_say_that_they_count_no_outage() {
     let front = desk.run(&["plan", "goal.toml", "--set", &layer, "--front", "hops,energy"]);
     assert_eq!(front.status, 2, "{}", front.stderr);
     let hop = desk.run(&["hop", "level.asc", "--from", "20,10", "--to", "22,10", "--scenario", "goal.toml", "--set", &layer]);
-    assert_eq!(hop.status, 2, "{}", hop.stderr);
-    assert!(hop.stderr.contains("layer.sun may be left for a while, which counts along free routes"), "{}", hop.stderr);
+    assert_eq!(hop.status, 0, "{}", hop.stderr);
+    assert!(hop.stderr.contains("it refuses no hop by itself"), "{}", hop.stderr);
     let trials = ["--set", "uncertainty.takeoff_speed_sigma_fraction=0.001", "--trials", "20"];
     let flown = desk.run(&[&["simulate", "goal.toml", "--set", &layer][..], &trials].concat());
     assert_eq!(flown.status, 0, "{}", flown.stderr);

@@ -22,6 +22,11 @@ impl EndOptions {
         Self { names: Some(["--from", "--to"]), at: [from, to] }
     }
 
+    /// Whether they are those of one hop.
+    pub(crate) fn is_of_hop(&self) -> bool {
+        self.names.is_some_and(|[from, _]| from == "--from")
+    }
+
     /// The ends of a path.
     pub(crate) const fn of_path(start: Option<Position>, goal: Option<Position>) -> Self {
         Self { names: Some(["--start", "--goal"]), at: [start, goal] }

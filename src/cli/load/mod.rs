@@ -248,6 +248,13 @@ fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends
         source.base = PathBuf::new();
     }
     apply_options(&mut source.entries, common, search, ends);
+    if *kind == TargetKind::Raster && ends.is_of_hop() {
+        for layer in source.entries.forget_layers_with_outages() {
+            let warning =
+                format!("layer.{layer} may be left for a while, which counts along whole paths: it refuses no hop by itself");
+            output::warn(common.quiet, &warning);
+        }
+    }
     look_at_keys(&mut source, target.is_scenario())?;
     Ok(source)
 }
