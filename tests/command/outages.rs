@@ -146,7 +146,7 @@ fn questions_of_single_hops_say_that_they_count_no_outage() {
     let layer = set(", outage_max_s = 600");
     let refused = desk.run(&["map", "level.asc", "--start", "5,10", "--scenario", "goal.toml", "--set", &layer]);
     assert_eq!(refused.status, 2);
-    assert!(refused.stderr.contains("layer.sun may be left for a while: remove its outage_max_s"), "{}", refused.stderr);
+    assert!(refused.stderr.contains("layer.sun may be left for a while"), "{}", refused.stderr);
     let front = desk.run(&["plan", "goal.toml", "--set", &layer, "--front", "hops,energy"]);
     assert_eq!(front.status, 2, "{}", front.stderr);
     let hop = desk.run(&["hop", "level.asc", "--from", "20,10", "--to", "22,10", "--scenario", "goal.toml", "--set", &layer]);
