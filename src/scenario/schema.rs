@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::{
     CATALOGUE, Kind,
-    catalogue::{MOST, SPEED_LEAST, SPEED_MOST},
+    kind::{MOST, SPEED_LEAST, SPEED_MOST},
     layers::{APPLIES_TO, LAYER_KEYS},
 };
 use crate::{

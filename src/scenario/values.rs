@@ -2,8 +2,8 @@
 
 use super::{
     Kind,
-    catalogue::{SPEED_LEAST, SPEED_MOST},
     face_groups::face_groups,
+    kind::{SPEED_LEAST, SPEED_MOST},
 };
 use crate::{
     planner::{Amount, Objective},
