@@ -293,13 +293,13 @@ pub(super) fn left_out(scenario: &Scenario, end: RoadmapEnd, [facets, turned]: [
     }
     if scenario.uncertainty.is_some() {
         warnings.push(
-            "a free route over a mesh is planned for exact commands: the errors of [uncertainty] choose none of its contacts and commands"
+            "this route is planned for exact commands: the errors of [uncertainty] choose none of its contacts and commands"
                 .to_owned(),
         );
     }
     if !scenario.hopper.limits().steps.is_continuous() {
         warnings.push(
-            "a free route over a mesh has exact commands, and this machine takes its commands in steps, which may miss a landing or break a \
+            "this route has exact commands, and this machine takes its commands in steps, which may miss a landing or break a \
              limit"
                 .to_owned(),
         );
@@ -314,7 +314,7 @@ pub(super) fn left_out(scenario: &Scenario, end: RoadmapEnd, [facets, turned]: [
         );
     } else if turned < facets && ended_early {
         warnings.push(format!(
-            "{turned} of {facets} facets of the mesh within the bounds had a contact in their middle, and the others only by chance: a path \
+            "{turned} of {facets} facets of the ground within the bounds had a contact in their middle, and the others only by chance: a path \
              over small facets may have been missed; more contacts (search.contacts_max) or narrower search.bounds_m reach more of them"
         ));
     }
