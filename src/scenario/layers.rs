@@ -175,13 +175,12 @@ fn outage(name: &str, table: &toml::Table, meaning: &dyn Fn(&str) -> String) -> 
 pub(super) fn check_outages(entries: &mut Entries, layers: &[LayerKeys], route: Route, drives: bool) {
     for layer in layers.iter().filter(|layer| layer.rule.outage.is_some() && (route != Route::Free || drives)) {
         let name = layer.rule.name;
-        let found = if drives { "[drive] has wheels" } else { "terrain.route is \"transect\"" };
-        let message = format!("layer.{name} may be left for a while, which counts along free routes of hops alone, but {found}");
-        let help = if drives {
-            "remove [drive], or the keys of the outage"
+        let (found, help) = if drives {
+            ("not with the wheels of [drive]", "remove [drive], or the keys of the outage")
         } else {
-            "set terrain.route = \"free\", or remove the keys of the outage"
+            ("not along transects and on maps", "set terrain.route = \"free\" and plan a route, or remove the keys of the outage")
         };
+        let message = format!("layer.{name} may be left for a while, which counts along free routes of hops alone, {found}");
         entries.problem(("layer", name.name()), ProblemKind::Misplaced, message, help);
     }
 }

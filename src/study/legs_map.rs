@@ -9,7 +9,7 @@ use super::{
     legs_ends::{DemGroundOfLegs, dem_ground_of_legs, planned_map},
     legs_route::assumptions,
     map::{MapStudyError, NamedPlace, Spot, spot},
-    nodes::{coarse_nodes, level_hop_of_m},
+    nodes::{coarse_map_nodes, level_hop_of_m},
     stance::{best_stance, with_robot},
 };
 use crate::{
@@ -158,7 +158,8 @@ impl PreparedLegsMap {
         let spacing = lattice.map(dem.georeference());
         let envelope = ground.mesh().envelope();
         let hop_m = level_hop_of_m(envelope.hopper(), envelope.gravity_m_s2());
-        warnings.extend(coarse_nodes(hop_m, "the map", spacing.dx_m().max(spacing.dy_m())).filter(|_| !starts.is_empty()));
+        let finer = if question.stride > 1 { "stride" } else { "distance of posts" };
+        warnings.extend(coarse_map_nodes(hop_m, finer, spacing.dx_m().max(spacing.dy_m())).filter(|_| !starts.is_empty()));
         let headings = scenario.legs.headings.unwrap_or(HEADINGS);
         let size = size(&ground, (dem, lattice), headings, !starts.is_empty());
         if let Some(allowed_bytes) = question.memory_max_bytes.filter(|allowed_bytes| size.bytes_max > *allowed_bytes) {

@@ -47,12 +47,21 @@ pub(super) fn planned_level_hop_m(scenario: &Scenario) -> f64 {
 /// # Arguments
 /// `of`: what the nodes belong to, such as `the map`.
 pub(super) fn coarse_nodes(level_hop_m: f64, of: &str, node_spacing_m: f64) -> Option<String> {
+    coarse_nodes_of(level_hop_m, (of, "search.node_spacing_max_m"), node_spacing_m)
+}
+
+/// The same of a map, where `finer` names what a smaller one of makes the nodes finer.
+pub(super) fn coarse_map_nodes(level_hop_m: f64, finer: &str, node_spacing_m: f64) -> Option<String> {
+    coarse_nodes_of(level_hop_m, ("the map", finer), node_spacing_m)
+}
+
+fn coarse_nodes_of(level_hop_m: f64, (of, finer): (&str, &str), node_spacing_m: f64) -> Option<String> {
     const FEW: f64 = 8.0;
     let spans = level_hop_m / node_spacing_m;
     (spans < FEW).then(|| {
         format!(
-            "one hop over level ground spans {spans:.1} nodes of {of}, {node_spacing_m} m apart, fewer than 8: a smaller \
-             search.node_spacing_max_m may save hops"
+            "one hop over level ground spans {spans:.1} nodes of {of}, {node_spacing_m} m apart, fewer than 8: a smaller {finer} \
+             may save hops"
         )
     })
 }

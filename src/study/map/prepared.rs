@@ -13,7 +13,7 @@ use crate::{
     study::{
         DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body,
         free_route::without_outages,
-        nodes::{coarse_nodes, level_hop_m, post_spacing_m},
+        nodes::{coarse_map_nodes, level_hop_m, post_spacing_m},
         pipeline::planned_over,
         with_measured_errors,
     },
@@ -148,8 +148,9 @@ impl MapQuestion<'_> {
     /// Warnings where one hop spans few nodes, and where a stride takes the place of a spacing.
     fn node_warnings(&self, ground: &DemGround, lattice: NodeLattice) -> Vec<String> {
         let nodes = lattice.map(ground.terrain().dem().georeference());
+        let finer = if self.stride > 1 { "stride" } else { "search.node_spacing_max_m" };
         let mut warnings: Vec<String> =
-            coarse_nodes(level_hop_m(ground), "the map", nodes.dx_m().max(nodes.dy_m())).into_iter().collect();
+            coarse_map_nodes(level_hop_m(ground), finer, nodes.dx_m().max(nodes.dy_m())).into_iter().collect();
         if self.stride > 1
             && let Some(PointSpacing::AtMostM(spacing_m)) = self.scenario.search.spacing
         {
