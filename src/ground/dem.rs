@@ -8,6 +8,7 @@ use super::{
     Around, ContactPoint, Element, Facet, Frame, Hold, NodeLattice, Profiles, Realization, Side, Surface, TakeoffWindows, Windows,
     excluded::{GreatestSpeeds, slopes_ahead},
     posts::Standing,
+    rest::rest_slope,
 };
 use crate::{
     ballistics::{FlightEnvelope, LineOfSight, limits},
@@ -525,21 +526,6 @@ pub(super) fn end_to_end(chain: ConstrainedChain) -> Option<(LineOfSight, Option
     let geometry = test.chain().geometry();
     let (start, end) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
     Some((test.line_of_sight(&start, &end)?, test.lofts(&start, &end).ok()))
-}
-
-/// The tangent of the steepest slope to rest on, under friction of this coefficient; `None` if every slope holds.
-pub(super) fn rest_slope(rest: RestSlope, friction: Option<f64>) -> Option<f64> {
-    match rest {
-        RestSlope::AsFrictionHolds => friction,
-        RestSlope::AtMost(angle) => Some(angle.slope()),
-        RestSlope::Unlimited => None,
-    }
-}
-
-/// Whether the facet is flat enough to rest on; an absent limit always holds. `friction` is its coefficient, if it has one;
-/// `tolerance_rad`, an angle, is converted to a slope: d tan = (1 + tan^2) d angle.
-pub(super) fn rests(rest: RestSlope, gradient: Gradient, friction: Option<f64>, tolerance_rad: f64) -> bool {
-    rest_slope(rest, friction).is_none_or(|max| gradient.norm() <= max + tolerance_rad * (1.0 + max * max))
 }
 
 #[cfg(test)]

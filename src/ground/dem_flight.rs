@@ -5,8 +5,9 @@ use nalgebra::{Point3, Vector2, Vector3};
 use super::{
     DemGround, FirstContact, Flight, LiftoffVelocity, MapPosition, Surface, TouchdownState,
     chain_flight::comes_down_m,
-    dem::{BESIDE_M, Gradient, rests},
+    dem::{BESIDE_M, Gradient},
     first_contact::{ANGLE_TOLERANCE_RAD, ContactFailure, PLACE_TOLERANCE, Realization, check_landing, failure_of, holds},
+    rest::rests,
 };
 use crate::{
     chain::{LineConstraints, contains_straight_down},

@@ -2,10 +2,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::{
-    DemGround, MapPosition, Surface,
-    dem::{BESIDE_M, rest_slope},
-};
+use super::{DemGround, MapPosition, Surface, dem::BESIDE_M, rest::rest_slope};
 use crate::world::FrictionCone;
 
 /// How the places scatter where hops to one target come down, and how exactly friction is known: standard deviations.

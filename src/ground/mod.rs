@@ -22,6 +22,7 @@ mod hop_reach;
 mod landing_share;
 mod mesh;
 mod posts;
+mod rest;
 mod stance;
 mod surface;
 mod sweep;

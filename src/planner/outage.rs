@@ -137,7 +137,7 @@ impl Outages {
         self.layers.with_outages().map(most).collect()
     }
 
-    /// Whether there are none.
+    /// Whether no layer may be left.
     pub(super) fn are_none(&self) -> bool {
         self.layers.with_outages().next().is_none()
     }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::roadmap::{ContactSampler, DrawnContacts, RoadmapGround, RoadmapSampler};
 use crate::{
     ballistics::{FlightEnvelope, LineOfSight, PathBounds},
-    ground::{MeshConflict, MeshContact, MeshGround, NoStance, Stance, StanceBuffers, StanceGround},
+    ground::{MeshContact, MeshGround, NoStance, Stance, StanceBuffers, StanceGround},
     quantity::SlopeInterval,
     world::Limit,
 };
@@ -50,10 +50,7 @@ impl RoadmapGround for StanceGround {
     }
 
     fn refused_by(&self, takeoff: &Stance, landing: &Stance) -> Option<Limit> {
-        match self.takeoff_set(takeoff, landing)?.conflict()? {
-            MeshConflict::Limits(conflict) => Some(conflict.counted_under()),
-            MeshConflict::Terrain { .. } => Some(Limit::Terrain),
-        }
+        Some(self.takeoff_set(takeoff, landing)?.conflict()?.counted_under())
     }
 }
 

@@ -29,7 +29,7 @@ pub struct MapAnswer {
     pub posts: usize,
     /// Of these, posts without elevation.
     pub no_data_posts: usize,
-    /// The post of the first start; [0, 0] where there is none, as of a map of single hops alone.
+    /// The post of the first start; [0, 0] for a map without a start, which has single hops alone.
     pub start_m: [f64; 2],
     /// Its distance from the requested position.
     pub start_offset_m: f64,
@@ -287,7 +287,7 @@ impl MapAnswer {
         self.goals.iter().all(|goal| goal.hops.is_some() && goal.propellant_shortage.is_none())
     }
 
-    /// What is reached from where; without a start that there is none.
+    /// What is reached from where; of a map without a start, its nodes alone.
     fn reached_text(&self) -> String {
         let node = self.node();
         if self.starts.is_empty() {

@@ -87,8 +87,8 @@ impl Simulation {
 
     /// The same mission, which goes on where it has reached its goal: with another one that begins there, over the same kind of ground.
     ///
-    /// Its trials fly both, each from where the one before has brought them. The goal of a mission is then one of several stops: whoever
-    /// misses it does not go on.
+    /// A trial begins the second mission where it ended the first. The goal of a mission is then one of several stops: a trial that
+    /// misses it ends there.
     ///
     /// # Errors
     /// [`SimulationError::OtherGround`].

@@ -188,7 +188,7 @@ fn planted_pushes_without_spin_are_found_and_directions_beside_them_are_not() {
             if free {
                 assert!(spin.lower < 1e-6 * arm_m, "{spin:?} {cut:?} {}", told());
             } else {
-                // No push without spin was found; that there is none is proved unless the contacts press together very hard.
+                // No push without spin was found; that no such push exists is proved unless the contacts press together very hard.
                 assert!(spin.upper > 1e-8 * arm_m, "{spin:?} {direction:?} {cut:?} {}", told());
                 outside += 1;
                 proved += usize::from(spin.lower > 0.0);

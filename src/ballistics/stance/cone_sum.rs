@@ -385,8 +385,8 @@ impl Fan {
     #[inline]
     fn add(&mut self, ray: [f64; 2]) {
         let (along, side) = (dot(self.axis, ray), cross(self.axis, ray));
-        // By rounding a ray may be a little more than a right angle away. One of length 0 has no direction, and no comparison with a
-        // number that is none holds.
+        // By rounding a ray may be a little more than a right angle away. One of length 0 has no direction: its
+        // tangent is NaN, with which no comparison holds.
         let tangent = if along > 0.0 { side / along } else { side * f64::INFINITY };
         if tangent <= self.least {
             (self.least, self.lower) = (tangent, ray);

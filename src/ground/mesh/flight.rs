@@ -17,9 +17,9 @@ use crate::{
     chain::contains_straight_down,
     ground::{
         FirstContact, Flight, LiftoffVelocity, Realization, Surface, TouchdownState, Triangulated,
-        dem::rest_slope,
         dem_flight::holds_on,
         first_contact::{ANGLE_TOLERANCE_RAD, ContactFailure, PLACE_TOLERANCE, check_landing, holds},
+        rest::rest_slope,
     },
     quantity::{ChainPoint, FacetId},
     terrain::VerticalPlane,

@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector2, Vector3};
 use super::{BALL_STAND_OFF, MeshContact, MeshGround};
 use crate::{
     chain::{ConstraintProblem, SegmentConstraints},
-    ground::{ContactPoint, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Triangulated, Windows, dem::rest_slope},
+    ground::{ContactPoint, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Triangulated, Windows, rest::rest_slope},
     quantity::FacetId,
     world::{Contact, Direction, FrictionCone, Gravity, Hopper, SurfaceProperties},
 };

@@ -48,6 +48,16 @@ pub enum MeshConflict {
     },
 }
 
+impl MeshConflict {
+    /// The limit under which the pair of contacts is counted as refused.
+    pub const fn counted_under(&self) -> Limit {
+        match self {
+            Self::Limits(conflict) => conflict.counted_under(),
+            Self::Terrain { .. } => Limit::Terrain,
+        }
+    }
+}
+
 /// The feasible take-off set of one pair of contacts of a mesh, limit by limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshTakeoffSet {

@@ -7,7 +7,7 @@ use nalgebra::Point3;
 use super::DrawnContacts;
 use crate::{
     ballistics::{FlightEnvelope, LineOfSight, PathBounds},
-    ground::{MeshBuffers, MeshConflict, MeshContact, MeshGround},
+    ground::{MeshBuffers, MeshContact, MeshGround},
     planner::LeastAmounts,
     quantity::SlopeInterval,
     world::Limit,
@@ -116,9 +116,6 @@ impl RoadmapGround for MeshGround {
     }
 
     fn refused_by(&self, takeoff: &MeshContact, landing: &MeshContact) -> Option<Limit> {
-        match self.takeoff_set(takeoff, landing)?.conflict()? {
-            MeshConflict::Limits(conflict) => Some(conflict.counted_under()),
-            MeshConflict::Terrain { .. } => Some(Limit::Terrain),
-        }
+        Some(self.takeoff_set(takeoff, landing)?.conflict()?.counted_under())
     }
 }

@@ -335,7 +335,7 @@ impl MapLayers {
         Self(layers.into())
     }
 
-    /// Whether there are none.
+    /// Whether the map has no layers.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
