@@ -216,7 +216,7 @@ impl Purpose {
 
     /// Whether it answers for a robot with legs.
     pub(crate) const fn stands_on_legs(self) -> bool {
-        matches!(self, Self::Plan | Self::Simulate | Self::Check | Self::Trade | Self::Map { .. })
+        matches!(self, Self::Plan | Self::Simulate | Self::Run | Self::Check | Self::Trade | Self::Map { .. })
     }
 
     /// Whether its paths are those of an objective within budgets, where the scenario has them.

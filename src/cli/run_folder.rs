@@ -11,7 +11,8 @@ use chta::{
     path::HopPath,
     report::{CrsRecord, DocumentKind, MapKnowledge, write_path_csv, write_travel_csv},
     study::{
-        Case, MeshRouted, MeshSimulated, Planned, Simulated, TargetsPlanned, TargetsSimulated, TravelPlanned, TravelSimulated,
+        Case, LegsRouted, LegsSimulated, MeshRouted, MeshSimulated, Planned, Simulated, TargetsPlanned, TargetsSimulated,
+        TravelPlanned, TravelSimulated,
     },
 };
 
@@ -28,11 +29,15 @@ const RESULT: &str = "result.json";
 /// The picture of the plan.
 const PICTURE: &str = "path.svg";
 
+/// The key postures of a robot with legs.
+const POSTURES: &str = "postures.svg";
+
 /// The pictures of the trials.
 const TRIAL_PICTURES: [&str; 2] = ["trials.svg", "landings.svg"];
 
 /// Files that only some runs have: those left by an earlier run that had a path, trials or another map would contradict this one.
-const OF_SOME_RUNS: [&str; 6] = ["chain.csv", "path.geojson", "path.prj", "simulation.json", TRIAL_PICTURES[0], TRIAL_PICTURES[1]];
+const OF_SOME_RUNS: [&str; 7] =
+    ["chain.csv", "path.geojson", "path.prj", "simulation.json", TRIAL_PICTURES[0], TRIAL_PICTURES[1], POSTURES];
 
 /// The files of a run before they are written.
 #[derive(Debug)]
@@ -128,6 +133,32 @@ impl<'a> RunFolder<'a> {
         if let Some(drawn) = simulated.picture(&input.scenario) {
             self.files.push((TRIAL_PICTURES[0], output::encoded(drawn, Path::new(TRIAL_PICTURES[0]))?));
         }
+        Ok(())
+    }
+
+    /// Adds the path of a robot with legs, the answer, its picture and the key postures.
+    pub(crate) fn plan_of_legs(&mut self, routed: &LegsRouted, input: &MeshPlanInput) -> Result<(), Failure> {
+        let mut path_csv = Vec::new();
+        write_path_csv(&routed.answer.plan.path, MapKnowledge::Metres, &mut path_csv)
+            .map_err(|error| Failure::message(format!("path.csv: {error}")))?;
+        let result = input.document_on_map(DocumentKind::PlanLegs, routed.crs().as_ref(), &routed.warnings, &routed.answer)?;
+        self.files.extend([("path.csv", path_csv), (RESULT, result.into_bytes())]);
+        self.files.push((PICTURE, output::encoded(routed.picture(&input.scenario, SeenFrom::default()), Path::new(PICTURE))?));
+        if let Some(drawn) = routed.postures_picture(&input.scenario, 1) {
+            self.files.push((POSTURES, output::encoded(drawn, Path::new(POSTURES))?));
+        }
+        if let Some(geojson) = routed.geojson() {
+            self.files.push(("path.geojson", geojson.into_bytes()));
+            self.files.extend(output::prj(routed.projection.as_ref()).map(|text| ("path.prj", text)));
+        }
+        Ok(())
+    }
+
+    /// Adds the answer of the trials of a robot with legs.
+    pub(crate) fn trials_of_legs(&mut self, simulated: &LegsSimulated, input: &MeshPlanInput) -> Result<(), Failure> {
+        let crs = simulated.routed.crs();
+        let document = input.document_on_map(DocumentKind::SimulateLegs, crs.as_ref(), &simulated.warnings, &simulated.answer)?;
+        self.files.push(("simulation.json", document.into_bytes()));
         Ok(())
     }
 

@@ -135,6 +135,22 @@ impl<'a> Files<'a> {
         self.0.push((file, bytes));
     }
 
+    /// Adds a GeoJSON on a map whose reference system was not known before the computation, with the `.prj` file beside it; without one no file is
+    /// written.
+    pub(crate) fn geojson_on(
+        &mut self,
+        file: Option<Pending<'a>>,
+        geojson: Option<String>,
+        projection: Option<&MapProjection>,
+    ) -> Result<(), Failure> {
+        let (Some(file), Some(geojson)) = (file, geojson) else { return Ok(()) };
+        if let Some(text) = output::prj(projection) {
+            self.0.push((Pending::begin(file.path().with_extension("prj"))?, text));
+        }
+        self.0.push((file, geojson.into_bytes()));
+        Ok(())
+    }
+
     /// Adds a GeoJSON; without one the file is not written.
     pub(crate) fn geojson(&mut self, file: Option<GeoJsonFile<'a>>, geojson: Option<String>) {
         if let (Some(GeoJsonFile { file, prj }), Some(geojson)) = (file, geojson) {

@@ -43,6 +43,8 @@ mod mesh_table;
 mod of_answers;
 mod palette;
 mod picture;
+mod postures;
+mod robot_view;
 mod rose;
 mod scale;
 mod sheet;
@@ -77,10 +79,12 @@ pub use mesh_hop::{MeshHopFigure, draw_mesh_hop};
 pub use mesh_reach::{MeshReachFigure, ReachedContact, draw_mesh_reach};
 pub use mesh_route::{MeshRouteFigure, MeshRouteLine, SeenFrom, draw_mesh_route};
 pub use picture::{Caption, Picture, PictureFormat};
+pub use postures::{POSTURE_ROWS_MAX, PostureMark, PostureRow, PosturesFigure, draw_postures};
+pub use robot_view::{LimbMark, RobotMark};
 pub use rose::draw_rose;
 pub use scale::Scale;
 pub use spans::{Closure, GroundSpan, GroundUse};
-pub use stance::{FootMark, StanceFigure, StandingRobot, draw_stance};
+pub use stance::{StanceFigure, StandingRobot, draw_stance};
 pub use trials::{
     ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, FrontAgainst, FrontFigure,
     FrontPoint, FrontValue, LandingBoxes, LandingErrorFigure, OutcomeBars, SensitivityBar, SensitivityFigure, SimulationFigure,

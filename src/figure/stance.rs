@@ -1,32 +1,27 @@
 //! A robot with legs that stands: from the side, from above, and the directions in which it may take off.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 use plotters::style::RGBColor;
 
 use super::{
     Caption, FigureError, Picture,
     axes::{BELOW_MM, Panel},
     keys::{self, Swatch},
-    palette::{AXIS, BLACK, BLUE, GROUND, LEFT_MM, ORANGE, PURPLE, RIGHT_MM, SKY, SMALL_MM, SURFACE, TEXT_MM, VERMILION, WHITE},
+    palette::{AXIS, BLACK, LEFT_MM, PURPLE, RIGHT_MM, SKY, SMALL_MM, TEXT_MM, WHITE},
+    robot_view::{LIMB_PEN, NORMAL_PEN, RobotMark, TRUNK, TRUNK_PEN, View},
     sheet::{Anchor, Hang, Label, Pen, Place, Sheet, text_width_mm},
-    ticks::Ticks,
 };
 use crate::{
-    quantity::{Angle, ChainPoint, SlopeInterval},
+    quantity::{Angle, SlopeInterval},
     report::{ElevationRecord, RoseRecord},
 };
 
-const GROUND_PEN: Pen = Pen { colour: SURFACE, width_mm: 0.45 };
-const TRUNK_PEN: Pen = Pen { colour: BLACK, width_mm: 0.35 };
-const LIMB_PEN: Pen = Pen { colour: BLUE, width_mm: 0.6 };
-const NORMAL_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.5 };
 const KC_PEN: Pen = Pen { colour: PURPLE, width_mm: 0.5 };
 const KC_PLUS_PEN: Pen = Pen { colour: BLACK, width_mm: 0.4 };
 const KC_DASH_MM: (f64, f64) = (1.4, 0.8);
 const KC_PLUS_DASH_MM: (f64, f64) = (0.4, 0.6);
 /// Directions of take-off by the exact cone.
 const CONE: RGBColor = SKY;
-const TRUNK: RGBColor = ORANGE;
 /// Between two panels.
 const GAP_MM: f64 = 17.0;
 /// The highest panel.
@@ -36,32 +31,15 @@ const ROSE_MM: f64 = 40.0;
 /// Degrees to a straight piece of a curve of the rose.
 const STEP_DEG: f64 = 2.0;
 
-/// A foot that stands.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FootMark {
-    /// Where its limb is fixed to the trunk, m from the root.
-    pub hip_m: Vector3<f64>,
-    /// Where it stands, m from the root.
-    pub foot_m: Vector3<f64>,
-    /// The normal of the ground.
-    pub normal: Vector3<f64>,
-}
-
-/// A robot in its pose.
+/// A robot that stands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StandingRobot {
-    /// The root, m.
-    pub root_m: Point3<f64>,
-    /// The corners of the boxes of its trunk, m from the root.
-    pub boxes: Vec<[Vector3<f64>; 8]>,
-    /// Its feet.
-    pub feet: Vec<FootMark>,
+    /// The robot, with the cut of the ground along the heading of the view from the side.
+    pub robot: RobotMark,
     /// The heading of its forward axis, degrees clockwise from +y.
     pub facing_deg: f64,
     /// The heading of the view from the side, degrees clockwise from +y.
     pub heading_deg: f64,
-    /// The cut of the ground by the vertical plane through the root along that heading, m from the root.
-    pub cut: Vec<[ChainPoint; 2]>,
     /// The take-off slopes in that heading by the exact cone.
     pub slopes: SlopeInterval,
 }
@@ -94,66 +72,12 @@ pub fn draw_stance(figure: &StanceFigure<'_>) -> Result<Picture, FigureError> {
     Ok(Picture::page(sheet, top_mm + 2.0))
 }
 
-/// A view of the robot: ground coordinates to (across, up) of a panel.
-struct View<'a> {
-    panel: Panel,
-    mm_per_m: f64,
-    /// The middle of the panel, m.
-    middle: [f64; 2],
-    flat: &'a dyn Fn(Vector3<f64>) -> [f64; 2],
-}
-
-impl View<'_> {
-    fn place(&self, at: Vector3<f64>) -> Place {
-        self.at((self.flat)(at))
-    }
-
-    fn at(&self, [across, up]: [f64; 2]) -> Place {
-        let (x, y) = (f64::midpoint(self.panel.left, self.panel.right), f64::midpoint(self.panel.top, self.panel.bottom));
-        (x + (across - self.middle[0]) * self.mm_per_m, y - (up - self.middle[1]) * self.mm_per_m)
-    }
-
-    fn axes(&self, sheet: &mut Sheet, [across, up]: [&str; 2]) {
-        let half = [0.5 * self.panel.width() / self.mm_per_m, 0.5 * self.panel.height() / self.mm_per_m];
-        let ticks = |axis: usize| Ticks::round(self.middle[axis] - half[axis], self.middle[axis] + half[axis], 5.0);
-        let (x, y) = (ticks(0), ticks(1));
-        let xs: Vec<_> = x.values.iter().map(|value| (self.at([*value, 0.0]).0, x.text(*value))).collect();
-        let ys: Vec<_> = y.values.iter().map(|value| (self.at([0.0, *value]).1, y.text(*value))).collect();
-        self.panel.x_axis(sheet, &xs, across, true);
-        self.panel.y_axis(sheet, &ys, up, true);
-    }
-
-    /// Whether a place lies on the panel.
-    fn shows(&self, (x, y): Place) -> bool {
-        (self.panel.left..=self.panel.right).contains(&x) && (self.panel.top..=self.panel.bottom).contains(&y)
-    }
-
-    /// The trunk, the limbs, the feet and the normals of the ground.
-    fn robot(&self, sheet: &mut Sheet, robot: &StandingRobot, size_m: f64) {
-        for corners in &robot.boxes {
-            let mut places: Vec<Place> = corners.iter().map(|corner| self.place(*corner)).collect();
-            let outline = hull(&mut places);
-            sheet.area(outline.clone(), TRUNK, 0.55);
-            sheet.line(outline.iter().copied().chain(outline.first().copied()).collect(), TRUNK_PEN);
-        }
-        for foot in &robot.feet {
-            sheet.line(vec![self.place(foot.hip_m), self.place(foot.foot_m)], LIMB_PEN);
-            sheet.line(vec![self.place(foot.foot_m), self.place(foot.foot_m + foot.normal * (0.25 * size_m))], NORMAL_PEN);
-            sheet.dot(self.place(foot.foot_m), 0.9, BLUE);
-        }
-        sheet.dot(self.place(Vector3::zeros()), 0.9, WHITE);
-        sheet.dot(self.place(Vector3::zeros()), 0.6, BLACK);
-    }
-}
-
 /// Both views side by side; where they end.
 fn views(sheet: &mut Sheet, robot: &StandingRobot, top_mm: f64) -> f64 {
     let (sine, cosine) = libm::sincos(robot.heading_deg.to_radians());
     let side = |at: Vector3<f64>| [at.x * sine + at.y * cosine, at.z];
     let above = |at: Vector3<f64>| [at.x, at.y];
-    let points: Vec<Vector3<f64>> =
-        robot.boxes.iter().flatten().copied().chain(robot.feet.iter().flat_map(|foot| [foot.hip_m, foot.foot_m])).collect();
-    let size_m = points.iter().map(Vector3::norm).fold(0.0, f64::max).max(1e-9);
+    let size_m = robot.robot.size_m();
     let width_mm = 0.5 * (RIGHT_MM - LEFT_MM - GAP_MM);
     let high_mm = width_mm.min(HIGHEST_MM);
     // Room around the robot for the cone over it.
@@ -161,14 +85,14 @@ fn views(sheet: &mut Sheet, robot: &StandingRobot, top_mm: f64) -> f64 {
     let panel = |left: f64| Panel { left, top: top_mm + 5.0, right: left + width_mm, bottom: top_mm + 5.0 + high_mm };
     let from_side = View { panel: panel(LEFT_MM), mm_per_m, middle: [0.0, 0.15 * size_m], flat: &side };
     title(sheet, &from_side.panel, &format!("From the side, along heading {:.0} deg", robot.heading_deg));
-    ground(sheet, &from_side, robot);
+    from_side.ground(sheet, &robot.robot.cut);
     cone(sheet, &from_side, robot, 1.5 * size_m);
-    from_side.robot(sheet, robot, size_m);
+    from_side.robot(sheet, &robot.robot, size_m);
     from_side.axes(sheet, ["ahead of the root (m)", "over the root (m)"]);
     from_side.panel.outline(sheet);
     let from_above = View { panel: panel(LEFT_MM + width_mm + GAP_MM), mm_per_m, middle: [0.0; 2], flat: &above };
     title(sheet, &from_above.panel, "From above");
-    from_above.robot(sheet, robot, size_m);
+    from_above.robot(sheet, &robot.robot, size_m);
     for (heading_deg, pen, dash) in [(robot.facing_deg, TRUNK_PEN, None), (robot.heading_deg, KC_PLUS_PEN, Some(KC_DASH_MM))] {
         let (sine, cosine) = libm::sincos(heading_deg.to_radians());
         let ends = [from_above.at([0.0, 0.0]), from_above.at([1.45 * size_m * sine, 1.45 * size_m * cosine])];
@@ -187,20 +111,6 @@ fn title(sheet: &mut Sheet, panel: &Panel, text: &str) {
     sheet.label(Label { bold: true, ..Label::new(text, at, TEXT_MM).hung(Anchor::Middle, Hang::Above) });
 }
 
-/// The ground in the plane of the view.
-fn ground(sheet: &mut Sheet, view: &View<'_>, robot: &StandingRobot) {
-    let Panel { left, right, top, bottom } = view.panel;
-    for [from, to] in &robot.cut {
-        let ends = [view.at([from.x_m, from.z_m]), view.at([to.x_m, to.z_m])];
-        if let Some([a, b]) = clipped(ends, [(left, top), (right, bottom)]) {
-            if (b.0 - a.0).abs() > 0.01 {
-                sheet.area(vec![a, b, (b.0, bottom), (a.0, bottom)], GROUND, 0.5);
-            }
-            sheet.line(vec![a, b], GROUND_PEN);
-        }
-    }
-}
-
 /// The directions of take-off in the plane of the view, from the root.
 fn cone(sheet: &mut Sheet, view: &View<'_>, robot: &StandingRobot, length_m: f64) {
     if robot.slopes.is_empty() {
@@ -214,45 +124,6 @@ fn cone(sheet: &mut Sheet, view: &View<'_>, robot: &StandingRobot, length_m: f64
     };
     let rim = (0..=steps).map(at).filter(|place| view.shows(*place));
     sheet.area(std::iter::once(view.at([0.0, 0.0])).chain(rim).collect(), CONE, 0.35);
-}
-
-/// The part of a segment within a rectangle.
-fn clipped([a, b]: [Place; 2], [low, high]: [Place; 2]) -> Option<[Place; 2]> {
-    let (mut from, mut to) = (0.0, 1.0);
-    for (start, end, least, most) in [(a.0, b.0, low.0, high.0), (a.1, b.1, low.1, high.1)] {
-        let step = end - start;
-        if step == 0.0 {
-            if start < least || start > most {
-                return None;
-            }
-            continue;
-        }
-        let (enter, leave) = ((least - start) / step, (most - start) / step);
-        from = f64::max(from, enter.min(leave));
-        to = f64::min(to, enter.max(leave));
-    }
-    let at = |share: f64| (a.0 + (b.0 - a.0) * share, a.1 + (b.1 - a.1) * share);
-    (from <= to).then(|| [at(from), at(to)])
-}
-
-/// The convex hull of places, in order around it.
-fn hull(places: &mut [Place]) -> Vec<Place> {
-    places.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let turns = |a: Place, b: Place, c: Place| (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0);
-    let half = |places: &mut dyn Iterator<Item = Place>| {
-        let mut found: Vec<Place> = Vec::new();
-        for place in places {
-            while found.len() >= 2 && turns(found[found.len() - 2], found[found.len() - 1], place) <= 0.0 {
-                found.pop();
-            }
-            found.push(place);
-        }
-        found.pop();
-        found
-    };
-    let mut outline = half(&mut places.iter().copied());
-    outline.extend(half(&mut places.iter().rev().copied()));
-    outline
 }
 
 /// The rose: headings around, north up; straight up in the middle, lower take-off angles farther out.
@@ -360,7 +231,7 @@ fn entries(figure: &StanceFigure<'_>) -> Vec<(Swatch, String)> {
     let mut found = Vec::new();
     if figure.robot.is_some() {
         found.push((Swatch::Fill(TRUNK), "trunk".to_owned()));
-        found.push((Swatch::Line(LIMB_PEN), "hip to foot".to_owned()));
+        found.push((Swatch::Line(LIMB_PEN), "limb".to_owned()));
         found.push((Swatch::Line(NORMAL_PEN), "normal of the ground at a foot".to_owned()));
         found.push((Swatch::Line(TRUNK_PEN), "forward".to_owned()));
         found.push((Swatch::Dashed(KC_PLUS_PEN, KC_DASH_MM.0, KC_DASH_MM.1), "heading of the view from the side".to_owned()));

@@ -45,7 +45,8 @@ pub(crate) use posts::{OffsetTable, Spacing};
 // A raw fact of a ground: the independent checker reads its cells.
 pub(crate) use crate::terrain::Layer;
 pub use stance::{
-    Foothold, LimbOutcome, NoFriction, NoStance, Pose, Stance, StanceBuffers, StanceGround, StanceMap, StandsUp, TrunkHit,
+    FootPush, Foothold, JointReach, LimbOutcome, NoFriction, NoStance, Pose, Stance, StanceBuffers, StanceGround, StanceMap,
+    StandsUp, TrunkHit,
 };
 pub use surface::{
     Around, ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Profiles, Side, Surface, TakeoffWindows, Triangulated,

@@ -6,6 +6,7 @@ mod generate;
 mod hop;
 mod outages;
 mod over_mesh;
+mod postures;
 mod pushes_again;
 mod stances_again;
 #[cfg(test)]
@@ -19,6 +20,7 @@ pub use generate::{PathError, TooManyHops, generate, generate_over};
 pub use hop::{Aim, Hop, HopPath, Propellant, RollOut, Totals, heading_deg};
 pub use outages::{LongestOutage, longest_outage};
 pub use over_mesh::{path_over_mesh, path_over_stances};
+pub use postures::{FootTime, Posture, PostureKind, StanceFlight};
 pub use stances_again::{StanceFault, StanceViolation, flown_by_stances};
 pub use steps::NoCommand;
 pub(crate) use steps::{SteppedGround, nearest_command};

@@ -3,11 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{FootRecord, MeshPlanAnswer, PoseRecord, mesh_plan_text, text::Sheet};
+use super::{FootRecord, JointReachRecord, MeshPlanAnswer, PoseRecord, PushRecord, mesh_plan_text, text::Sheet};
 use crate::{
     ground::{LimbOutcome, Stance, StanceGround},
+    path::{HopPath, StanceFlight},
     planner::RefusedStances,
     quantity::format_number,
+    world::Contact,
 };
 
 /// The answer of `chta plan` for a robot with legs.
@@ -24,6 +26,9 @@ pub struct LegsPlanAnswer {
     pub ground: LegsGroundRecord,
     /// Poses that were drawn and gave no stance.
     pub refused_poses: RefusedPosesRecord,
+    /// How often the joints refute the workspaces; absent where no joints are known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint_reach: Option<JointReachRecord>,
     /// The path between stances, whose hops are those of the root of the robot; contacts of the roadmap are stances.
     #[serde(flatten)]
     pub plan: MeshPlanAnswer,
@@ -101,12 +106,32 @@ pub struct StanceRecord {
     pub bears_weight: bool,
     /// Whether it need not topple at rest.
     pub upright: bool,
+    /// The forces on its feet as the hop lands that ends here; absent at the start, and unless the robot states stroke and mass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub landing: Option<PushRecord>,
+    /// The forces on its feet as the next hop takes off; absent at the goal, and unless the robot states stroke and mass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub takeoff: Option<PushRecord>,
 }
 
 impl StanceRecord {
+    /// Of the stances of a path, with what its hops ask of them; of stances alone without a path.
+    pub fn all_of(ground: &StanceGround, stances: &[&Stance], path: Option<&HopPath>) -> Vec<Self> {
+        let mut records: Vec<Self> = stances.iter().map(|stance| Self::new(ground, stance)).collect();
+        let hops = path.map_or(&[][..], |path| &path.hops);
+        for (number, (hop, ends)) in hops.iter().zip(stances.windows(2)).enumerate() {
+            let flight = StanceFlight::new(ground, [ends[0], ends[1]], hop);
+            records[number].takeoff = PushRecord::of_hop(ground, &flight, ends[0], Contact::Takeoff);
+            records[number + 1].landing = PushRecord::of_hop(ground, &flight, ends[1], Contact::Landing);
+        }
+        records
+    }
+
     /// Of a stance.
     pub fn new(ground: &StanceGround, stance: &Stance) -> Self {
         Self {
+            landing: None,
+            takeoff: None,
             pose: PoseRecord::of(stance.pose(), None),
             contacts: FootRecord::all_of(ground, stance),
             force_closure: stance.cone().is_some_and(crate::ballistics::stance::ConeSum::is_everything),
@@ -125,6 +150,9 @@ pub fn legs_plan_text(answer: &LegsPlanAnswer) -> String {
     sheet.line(format_args!(
         "poses without a stance: {trunk} by the trunk, {too_few_contacts} by too few contacts, {cone} by the cone"
     ));
+    if let Some(reach) = &answer.joint_reach {
+        sheet.line(format_args!("{}", reach.sentence()));
+    }
     for (number, stance) in answer.stances.iter().enumerate() {
         let [x, y, z] = stance.pose.root_m;
         let stand = stance.contacts.iter().filter(|foot| foot.outcome == LimbOutcome::Stands);
@@ -136,6 +164,11 @@ pub fn legs_plan_text(answer: &LegsPlanAnswer) -> String {
             stance.pose.heading_deg,
             names.join(", ")
         ));
+        for (when, push) in [("landing", &stance.landing), ("take-off", &stance.takeoff)] {
+            if let Some(words) = push.as_ref().and_then(PushRecord::words) {
+                sheet.line(format_args!("  {when}: {words}"));
+            }
+        }
     }
     sheet.into_text() + &mesh_plan_text(&answer.plan).replace("these contacts", "these stances").replace("contacts (", "stances (")
 }

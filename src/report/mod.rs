@@ -11,6 +11,7 @@ mod fan_answer;
 mod geojson;
 mod hop_answer;
 mod hop_margins;
+mod joints_record;
 pub mod landings;
 mod legs_map_answer;
 mod legs_plan_answer;
@@ -68,6 +69,7 @@ pub use hop_answer::{
     WindowRecord,
 };
 pub use hop_margins::HopMarginsRecord;
+pub use joints_record::{FootJointsRecord, FootPushRecord, JointReachRecord, JointRecord, PushRecord};
 pub use legs_map_answer::{LegsGoalRecord, LegsMapAnswer, LegsReachRecord, LimbNodesRecord};
 pub use legs_plan_answer::{LegsGroundKind, LegsGroundRecord, LegsPlanAnswer, RefusedPosesRecord, StanceRecord, legs_plan_text};
 pub use legs_simulate_answer::{EndedInHopRecord, LegsOutcomeRecord, LegsSimulateAnswer, LegsTrialsRecord, legs_simulate_text};

@@ -4,7 +4,10 @@ use nalgebra::{Vector2, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::text::{Sheet, place};
+use super::{
+    FootJointsRecord, PushRecord,
+    text::{Sheet, place},
+};
 use crate::{
     ballistics::stance::{ConeKind, ConeSum, ContactCone, spin_free_cut},
     ground::{Foothold, LimbOutcome, NoStance, Pose, Stance, StanceGround},
@@ -32,6 +35,10 @@ pub struct StanceAnswer {
     pub bears_weight: bool,
     /// Whether it need not topple at rest: its weight is borne without a moment about the centre of mass. Null for contacts alone.
     pub upright: Option<bool>,
+    /// The forces on the feet of a robot at rest, and what they ask of its joints; absent where its mass is not known, and where its feet do not bear it
+    /// without slipping and toppling.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest: Option<PushRecord>,
     /// Of the headings of the rose, the share in which it may take off.
     pub usable_headings: f64,
     /// The share in which it may take off without any spin; null for contacts alone.
@@ -87,6 +94,9 @@ pub struct FootRecord {
     pub spread_deg: Option<f64>,
     /// Their area, m^2.
     pub area_m2: Option<f64>,
+    /// The joints that put it there; absent where they are not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joints: Option<FootJointsRecord>,
 }
 
 /// The widest beam.
@@ -163,7 +173,7 @@ impl TriedPoses {
 }
 
 impl FootRecord {
-    fn of(limb: String, foothold: &Foothold) -> Self {
+    fn of(ground: &StanceGround, pose: &Pose, limb: String, foothold: &Foothold) -> Self {
         Self {
             limb: Some(limb),
             outcome: LimbOutcome::Stands,
@@ -172,6 +182,7 @@ impl FootRecord {
             friction_coefficient: Some(foothold.friction.coefficient()),
             spread_deg: Some(foothold.spread.degrees()),
             area_m2: Some(foothold.area_m2),
+            joints: FootJointsRecord::of(ground, pose, foothold),
         }
     }
 
@@ -184,6 +195,7 @@ impl FootRecord {
             friction_coefficient: None,
             spread_deg: None,
             area_m2: None,
+            joints: None,
         }
     }
 
@@ -196,6 +208,7 @@ impl FootRecord {
             friction_coefficient: Some(contact.friction().coefficient()),
             spread_deg: None,
             area_m2: None,
+            joints: None,
         }
     }
 
@@ -205,8 +218,10 @@ impl FootRecord {
         limbs
             .map(|(number, (limb, outcome))| {
                 let foothold = stance.footholds().iter().find(|foothold| foothold.limb == number);
-                foothold
-                    .map_or_else(|| Self::missing(limb.name.clone(), *outcome), |foothold| Self::of(limb.name.clone(), foothold))
+                foothold.map_or_else(
+                    || Self::missing(limb.name.clone(), *outcome),
+                    |foothold| Self::of(ground, stance.pose(), limb.name.clone(), foothold),
+                )
             })
             .collect()
     }
@@ -222,6 +237,7 @@ impl StanceAnswer {
             pose: Some(PoseRecord::of(stance.pose(), height_m)),
             contacts: FootRecord::all_of(ground, stance),
             upright: Some(ground.rests_upright(stance)),
+            rest: PushRecord::at_rest(ground, stance),
             ..Self::of_cones(&cones, headings)
         };
         let arms = ground.arms(stance);
@@ -265,6 +281,7 @@ impl StanceAnswer {
             force_closure: false,
             bears_weight: false,
             upright: None,
+            rest: None,
             usable_headings: 0.0,
             spin_free_headings: None,
             widest_beam: None,
@@ -305,6 +322,7 @@ impl StanceAnswer {
             force_closure: k.is_everything(),
             bears_weight: k.holds_weight(),
             upright: None,
+            rest: None,
             usable_headings,
             spin_free_headings: None,
             widest_beam: widest.map(|(heading_deg, width_deg)| BeamRecord { heading_deg, width_deg }),
@@ -373,6 +391,9 @@ pub fn stance_text(answer: &StanceAnswer) -> String {
             let rests = if upright { "need not topple at rest" } else { "topples at rest unless it balances" };
             sheet.line(format_args!("{rests}; take-offs without spin in {:.0} % of headings", 100.0 * share));
         }
+        if let Some((limb, share)) = answer.rest.as_ref().and_then(PushRecord::greatest_effort) {
+            sheet.line(format_args!("at rest the joints of {limb} hold most: {:.0} % of a torque limit", 100.0 * share));
+        }
         let speeds = answer.rose.iter().filter_map(|row| row.push_speed_max_m_s);
         if let Some(least) = speeds.clone().reduce(f64::min) {
             let most = speeds.fold(0.0, f64::max);
@@ -404,5 +425,6 @@ fn foot_text(foot: &FootRecord) -> String {
     };
     let at = foot.position_m.map_or(String::new(), |[x, y, z]| format!(" at ({}, {}, {}) m", place(x), place(y), place(z)));
     let spread = foot.spread_deg.filter(|deg| *deg >= 0.05).map_or(String::new(), |deg| format!(", facets up to {deg:.1} deg off"));
-    format!("{name}{at}, normal ({x:.3}, {y:.3}, {z:.3}), friction {mu}{spread}")
+    let joints = foot.joints.as_ref().map_or(String::new(), |joints| format!("; {}", joints.words()));
+    format!("{name}{at}, normal ({x:.3}, {y:.3}, {z:.3}), friction {mu}{spread}{joints}")
 }

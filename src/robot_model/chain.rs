@@ -98,6 +98,22 @@ impl LimbChain {
         frame.point(&self.foot_m)
     }
 
+    /// Where the joints are in the trunk frame, m, from the trunk on, and then the foot.
+    ///
+    /// # Arguments
+    /// `positions`: as of [`foot`](Self::foot).
+    pub fn points(&self, positions: &[f64]) -> Vec<Point3<f64>> {
+        let mut frame = Frame::identity();
+        let mut points = Vec::with_capacity(self.joints.len() + 1);
+        for (index, joint) in self.joints.iter().enumerate() {
+            frame = frame.then(&joint.frame);
+            points.push(Point3::from(frame.origin_m));
+            frame = frame.then(&moved(joint, positions.get(index).copied().unwrap_or(0.0)));
+        }
+        points.push(frame.point(&self.foot_m));
+        points
+    }
+
     /// Where the foot is, and the Jacobian by its columns: how the foot moves with each joint, m/rad or m/m.
     ///
     /// ```text

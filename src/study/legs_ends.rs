@@ -14,9 +14,9 @@ use super::{
 use crate::{
     ground::{MeshContact, MeshGround},
     quantity::{MapPoint, format_number},
-    report::{CrsRecord, LegsGroundKind, LegsGroundRecord},
+    report::{LegsGroundKind, LegsGroundRecord},
     scenario::{Scenario, TerrainSource},
-    terrain::{Dem, MapBounds, MapPlace, MeshTree, OverlaidDem, Triangles, check_scale, mesh_of_dem},
+    terrain::{Dem, MapBounds, MapPlace, MapProjection, MeshTree, OverlaidDem, Triangles, check_scale, mesh_of_dem},
     world::Robot,
 };
 
@@ -30,8 +30,8 @@ pub(super) struct LegsEnds {
     pub(super) ground: MeshGround,
     /// The DEM with its overlays, where the facets are those between its posts.
     pub(super) map: Option<OverlaidDem>,
-    /// The reference system of its map.
-    pub(super) crs: Option<CrsRecord>,
+    /// The reference system of its map, if it is known.
+    pub(super) projection: Option<MapProjection>,
     /// Metres per unit of the file of a mesh.
     pub(super) scale: f64,
     /// Start and goal as given, m.
@@ -54,7 +54,7 @@ pub(super) fn legs_ends(scenario: &Scenario, base: &Path, robot: &Robot) -> Resu
         warnings.extend(["start", "goal"].iter().zip(&surface).filter_map(|(end, at)| faces_down(at, end)));
         let facets = ground.tree().mesh().triangle_count();
         let record = LegsGroundRecord { kind: LegsGroundKind::Mesh, facets, post_spacing_m: None, no_data_posts: None };
-        return Ok(LegsEnds { ground, map: None, crs: None, scale, given_m, surface, record, warnings });
+        return Ok(LegsEnds { ground, map: None, projection: None, scale, given_m, surface, record, warnings });
     };
     let DemGroundOfLegs { ground, map, record, mut warnings } = dem_ground_of_legs(scenario, base, (&base.join(path), robot))?;
     let dem = map.dem();
@@ -73,8 +73,7 @@ pub(super) fn legs_ends(scenario: &Scenario, base: &Path, robot: &Robot) -> Resu
         )?)
     };
     let surface = [contact(0, "start")?, contact(1, "goal")?];
-    let crs = projection.ok().as_ref().map(CrsRecord::from);
-    Ok(LegsEnds { ground, crs, scale: 1.0, given_m, surface, record, warnings, map: Some(map) })
+    Ok(LegsEnds { ground, projection: projection.ok(), scale: 1.0, given_m, surface, record, warnings, map: Some(map) })
 }
 
 /// The facets of a DEM as the ground of a robot with legs.

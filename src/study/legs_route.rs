@@ -21,9 +21,9 @@ use crate::{
     },
     progress::{Cancelled, Progress},
     quantity::{MapPoint, format_number},
-    report::{CrsRecord, LegsPlanAnswer, StanceRecord},
+    report::{CrsRecord, FootRecord, LegsPlanAnswer, StanceRecord, path_geojson},
     scenario::{RobotFileError, Scenario, TerrainSource, read_robot},
-    terrain::{MapBounds, OverlaidDem, TerrainError},
+    terrain::{MapBounds, MapProjection, OverlaidDem, TerrainError},
 };
 
 /// What is asked.
@@ -138,7 +138,7 @@ pub struct LegsRouted {
     /// The DEM with its overlays, of which the whole friction counts; `None` over a mesh.
     pub(super) map: Option<OverlaidDem>,
     /// The reference system of the map, if it is known.
-    pub crs: Option<CrsRecord>,
+    pub projection: Option<MapProjection>,
     /// The roadmap and its best path.
     pub grown: GrownRoadmap<Stance>,
     /// The path of the root with all its numbers.
@@ -161,9 +161,10 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
     let read = read_robot(&file)?;
     let with_limits = Scenario { hopper: with_robot(&scenario.hopper, &read.robot), ..scenario.clone() };
     let scenario = &with_limits;
-    let LegsEnds { ground, map, crs, scale, given_m, surface, record, mut warnings } = legs_ends(scenario, base, &read.robot)?;
+    let LegsEnds { ground, map, projection, scale, given_m, surface, record, mut warnings } =
+        legs_ends(scenario, base, &read.robot)?;
     warnings.extend(read.warnings);
-    let ground = StanceGround::new(ground, read.robot, scenario.legs.cone, scenario.legs.up)?;
+    let ground = StanceGround::new(ground, read.robot, scenario.legs.cone, scenario.legs.up)?.with_chains(read.chains);
     let ground = match &map {
         Some(map) if ground.is_point() && !map.overlays().are_none() => return Err(LegsRouteError::PointOnOverlays),
         Some(map) => ground.with_map(StanceMap::new(planned_map(map, scenario))),
@@ -227,11 +228,34 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
         up: ground.stands_up().name().to_owned(),
         ground: record,
         refused_poses: refused.into(),
+        joint_reach: ground.has_joints().then(|| {
+            let all = (0..grown.roadmap.contact_count()).map(|node| grown.roadmap.contact(node));
+            ground.joint_reach(all).into()
+        }),
         plan,
-        stances: stances.iter().map(|stance| StanceRecord::new(&ground, stance)).collect(),
+        stances: StanceRecord::all_of(&ground, &stances, path.as_ref()),
     };
+    warnings.extend(beyond_joints(&answer.stances));
     let robot_files = std::iter::once(file).chain(read.files).collect();
-    Ok(LegsRouted { ground, map, crs, grown, path, answer, warnings, robot_files })
+    Ok(LegsRouted { ground, map, projection, grown, path, answer, warnings, robot_files })
+}
+
+impl LegsRouted {
+    /// The reference system of the map, if it is known.
+    pub fn crs(&self) -> Option<CrsRecord> {
+        self.projection.as_ref().map(CrsRecord::from)
+    }
+
+    /// The path of its root over a DEM as `GeoJSON`, as [`path_geojson`]; `None` without a path, and over a mesh.
+    pub fn geojson(&self) -> Option<String> {
+        self.map.as_ref()?;
+        path_geojson(self.path.as_ref()?, self.ground.mesh().envelope().gravity_m_s2(), self.projection.as_ref())
+    }
+
+    /// Whether it stands on the facets of a DEM.
+    pub const fn is_over_dem(&self) -> bool {
+        self.map.is_some()
+    }
 }
 
 #[cfg(feature = "plot")]
@@ -285,16 +309,42 @@ fn without_effect(scenario: &Scenario) -> Option<String> {
     (!given.is_empty()).then(|| format!("{}: without effect on the trunk and the feet of a robot with legs", given.join(", ")))
 }
 
+/// Where the joints do not do what the stances of a path ask for: one sentence for each stance.
+fn beyond_joints(stances: &[StanceRecord]) -> Vec<String> {
+    let mut found = Vec::new();
+    for (number, stance) in stances.iter().enumerate() {
+        let short = |foot: &FootRecord| Some((foot.limb.clone()?, foot.joints.as_ref().filter(|joints| !joints.reached)?.error_m));
+        found.extend(stance.contacts.iter().filter_map(short).map(|(limb, error_m)| {
+            format!(
+                "stance {number}: no joints were found that put the foot of {limb} where its workspace says, the nearest stop {error_m:.3} m \
+                 short: make the workspace smaller"
+            )
+        }));
+        for (what, push) in [("landing at", &stance.landing), ("take-off from", &stance.takeoff)] {
+            let Some(push) = push else { continue };
+            let shares = [("torque or force", push.greatest_effort()), ("rate", push.greatest_rate())];
+            found.extend(shares.into_iter().filter_map(|(kind, share)| Some((kind, share.filter(|(_, share)| *share > 1.0)?))).map(
+                |(kind, (limb, share))| {
+                    format!(
+                        "{what} stance {number}: a joint of {limb} needs {share:.2} times its greatest {kind}, by forces that leave the least \
+                         spin; other forces may need less, a lower speed does"
+                    )
+                },
+            ));
+        }
+    }
+    found
+}
+
 /// What a plan of a robot with legs assumes.
 pub(super) fn assumptions(ground: &StanceGround) -> Vec<String> {
     if ground.is_point() {
         return Vec::new();
     }
-    let mut found = vec![
-        "the feet are estimated from the space that they reach, and keep off the ground in flight: legs are drawn in, and the joints are not \
-         looked at"
-            .to_owned(),
-    ];
+    let joints = if ground.has_joints() { "the joints are looked at afterwards" } else { "the joints are not known" };
+    let mut found = vec![format!(
+        "the feet are estimated from the space that they reach, and keep off the ground in flight: legs are drawn in, and {joints}"
+    )];
     if ground.robot().stroke_m().is_none() {
         found.push("take-off and landing are impulses: gravity does nothing while the feet push".to_owned());
     }

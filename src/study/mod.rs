@@ -70,6 +70,8 @@ mod record;
 mod require;
 mod require_free;
 mod require_success;
+#[cfg(feature = "plot")]
+mod robot_mark;
 mod schema;
 mod sense;
 mod sensitivity;

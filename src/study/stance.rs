@@ -20,6 +20,7 @@ use crate::{
     ground::{MeshContact, MeshGround, NoFriction, NoStance, Stance, StanceGround, StanceMap, StandsUp},
     quantity::MapPoint,
     report::{StanceAnswer, TriedPoses, heading_of},
+    robot_model::LimbChain,
     scenario::Scenario,
     terrain::{Dem, MapBounds, MeshTree, TerrainError, mesh_of_dem, read_mesh_with},
     world::{Hopper, HopperLimits, LandingMode, Robot},
@@ -47,6 +48,8 @@ pub struct StanceQuestion<'a> {
     pub terrain: &'a StanceTerrain,
     /// The robot.
     pub robot: Robot,
+    /// The joints of its limbs, in the order of the limbs; `None` or absent where they are not known.
+    pub chains: &'a [Option<LimbChain>],
     /// The place, moved to the nearest point of the surface, m; of a DEM the height is left out.
     pub at_m: (MapPoint, Option<f64>),
     /// Which way its forward axis points, degrees clockwise from +y; `None`: all around is tried.
@@ -137,7 +140,7 @@ pub fn stand(question: &StanceQuestion<'_>) -> Result<Stood, StanceError> {
         }
     };
     let at = on_mesh(&ground, at, "place", &mut warnings)?;
-    let ground = StanceGround::new(ground, robot.clone(), ConeKind::Exact, question.up)?;
+    let ground = StanceGround::new(ground, robot.clone(), ConeKind::Exact, question.up)?.with_chains(question.chains);
     let ground = match question.terrain {
         StanceTerrain::Mesh(..) => ground,
         StanceTerrain::Dem(dem) => {

@@ -1,17 +1,12 @@
 //! The picture of a stance.
 
-use std::ops::ControlFlow;
-
-use nalgebra::Vector3;
-
-use super::{Stood, captions::title, conditions};
+use super::{Stood, captions::title, conditions, robot_mark::robot_mark};
 use crate::{
-    figure::{Caption, FigureError, FootMark, Picture, StanceFigure, StandingRobot, draw_stance},
+    figure::{Caption, FigureError, Picture, StanceFigure, StandingRobot, draw_stance},
     ground::Stance,
-    quantity::{ChainPoint, SlopeInterval},
+    quantity::SlopeInterval,
     report::{StanceAnswer, heading_of},
     scenario::Scenario,
-    terrain::VerticalPlane,
 };
 
 impl Stood {
@@ -34,33 +29,19 @@ impl Stood {
     }
 
     fn standing(&self, stance: &Stance) -> StandingRobot {
-        let pose = stance.pose();
         let heading_deg = self.answer.widest_beam.map_or(0.0, |beam| beam.heading_deg);
         let heading = heading_of(heading_deg);
-        let plane = VerticalPlane { origin: pose.root_m, heading };
-        let mut cut: Vec<[ChainPoint; 2]> = Vec::new();
-        let _ = self.ground.mesh().tree().cut(
-            &plane,
-            |_| true,
-            |_, segment| {
-                cut.push(segment);
-                ControlFlow::Continue(())
-            },
-        );
-        let limbs = self.ground.robot().limbs();
-        let feet = stance.footholds().iter().map(|foot| FootMark {
-            hip_m: pose.turn * limbs[foot.limb].hip_m.coords,
-            foot_m: foot.point_m - pose.root_m,
-            normal: foot.normal,
-        });
-        let boxes = self.ground.robot().trunk().iter().map(|part| part.corners_m().map(|corner| pose.turn * corner.coords));
+        let feet: Vec<_> = stance.footholds().iter().map(|foot| (foot.limb, foot.point_m)).collect();
+        let mut robot = robot_mark(&self.ground, stance.pose(), &feet, heading);
+        // Those that do not stand are named in the answer.
+        robot.limbs.retain(|limb| limb.stands);
+        for (limb, foot) in robot.limbs.iter_mut().zip(stance.footholds()) {
+            limb.normal = Some(foot.normal);
+        }
         StandingRobot {
-            root_m: pose.root_m,
-            boxes: boxes.collect::<Vec<[Vector3<f64>; 8]>>(),
-            feet: feet.collect(),
+            robot,
             facing_deg: self.answer.pose.map_or(0.0, |pose| pose.heading_deg),
             heading_deg,
-            cut,
             slopes: stance.cone().map_or(SlopeInterval::EMPTY, |cone| cone.takeoff_slopes(heading)),
         }
     }

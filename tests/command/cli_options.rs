@@ -553,6 +553,12 @@ const PLAN: [Trial; 24] = [
         &["plan", "errors.toml", "--front", "hops,risk"],
         &["plan", "errors.toml", "--front", "hops,risk", "--plot-front", "front.svg"],
     ),
+    ("--plot-postures", &["plan", "legs.toml"], &["plan", "legs.toml", "--plot-postures", "postures.svg"]),
+    (
+        "--postures-from",
+        &["plan", "legs.toml", "--plot-postures", "postures.svg"],
+        &["plan", "legs.toml", "--plot-postures", "postures.svg", "--postures-from", "2"],
+    ),
     ("--trajectory", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--trajectory", "t.csv"]),
     (
         "--step-s",
@@ -1331,7 +1337,19 @@ const SYNTH_OPTIONS: [(&str, &str); 26] = [
 fn desk() -> Desk {
     let desk = Desk::with_dem();
     desk.write("arena.toml", ACROSS);
-    desk.write("four_legs.toml", FOUR_LEGS);
+    desk.write_legs("four_legs.toml", FOUR_LEGS);
+    // Two hops of its legs apart, without the limits that take most of the time.
+    let light: String = FOUR_LEGS
+        .lines()
+        .filter(|line| !line.starts_with("spin_max") && !line.starts_with("force_max"))
+        .collect::<Vec<_>>()
+        .join("\n");
+    desk.write("light_legs.toml", light);
+    let walk = desk.read("map.toml").replace("goal_m = [15, 12]", "goal_m = [8, 8]\nroute = \"free\"");
+    desk.write(
+        "legs.toml",
+        format!("[robot]\nfile = \"light_legs.toml\"\n\n{}", walk.replace("node_spacing_max_m = 1.0", "contacts_max = 30")),
+    );
     desk.write("one_leg.toml", include_str!("../../data/robots/one_leg.toml"));
     desk.write("other_map.toml", desk.read("map.toml").replace("= 0.8", "= 0.5"));
     desk.write("contacts.csv", "normal_x,normal_y,normal_z,friction_coefficient\n0,0,1,0.6\n1,0,0.2,0.4\n");
@@ -1510,6 +1528,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 "--geojson",
                 "--plot",
                 "--plot-front",
+                "--plot-postures",
                 "--plot-map",
                 "--pairs",
                 "--starts",

@@ -70,7 +70,7 @@ fn every_command_ends_with_the_status_of_the_documents() {
         desk.write("slippery.toml", desk.read("scenario.toml").replace("= 0.6", "= 0.05") + trials);
         desk.write("weak_map.toml", desk.read("map.toml").replace("= 6.0", "= 0.3"));
         desk.write("arena.toml", ACROSS);
-        desk.write("four_legs.toml", FOUR_LEGS);
+        desk.write_legs("four_legs.toml", FOUR_LEGS);
         desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
         for (status, words) in [(0, Some(yes)), (1, no)] {
             let Some(words) = words else { continue };

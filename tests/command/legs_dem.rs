@@ -40,7 +40,7 @@ const ERRORS: &str = "[uncertainty]\ntakeoff_speed_sigma_fraction = 0.02\ntakeof
 
 fn desk(gap: bool) -> (Desk, Dem) {
     let desk = Desk::new();
-    desk.write("legs.toml", light());
+    desk.write_legs("legs.toml", &light());
     desk.write("ground.asc", ground(gap));
     desk.write("plan.toml", scenario(ERRORS));
     let dem = read_dem(&desk.path().join("ground.asc")).unwrap();

@@ -58,7 +58,7 @@ fn tables_of_contacts_that_are_wrong_name_line_found_and_expected() {
 #[test]
 fn a_robot_stands_on_a_raster_or_the_answer_names_its_limbs() {
     let desk = Desk::with_dem();
-    desk.write("four_legs.toml", FOUR_LEGS);
+    desk.write_legs("four_legs.toml", FOUR_LEGS);
     let words = ["stance", "ground.tif", "--robot", "four_legs.toml", "--at", "9,9", "--scenario", "map.toml", "--quiet"];
     let document = desk.json(&words);
     assert_eq!(document["stands"], true, "{document}");
@@ -154,4 +154,42 @@ fn the_commands_of_the_document_run() {
         let (status, _, stderr) = chta(root(), &[&words[..], &["--quiet"]].concat());
         assert_eq!((status, stderr.as_str()), (0, ""), "{words:?}");
     }
+}
+
+#[test]
+fn a_run_of_a_robot_with_joints_has_its_postures_and_what_the_hops_ask_of_them() {
+    let desk = Desk::new();
+    let scenario = "data/mesh_scenarios/mars_four_legs.toml";
+    let words = ["--set", "search.contacts_max=20", "--set", "uncertainty.trials=10", "--quiet"];
+    let out = desk.path().join("out");
+    let run = [&["run", scenario, "-o", out.to_str().unwrap(), "--format", "json"], &words[..]].concat();
+    let (status, stdout, stderr) = chta(root(), &run);
+    assert_eq!(status, 0, "{stderr}");
+    let document: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    let stances = document["stances"].as_array().unwrap();
+    let hops = document["path"].as_array().unwrap().len();
+    assert!(hops >= 2 && stances.len() == hops + 1 && document["joint_reach"]["feet"].as_u64().unwrap() >= 60, "{document}");
+    for (number, stance) in stances.iter().enumerate() {
+        assert_eq!((stance.get("landing").is_none(), stance.get("takeoff").is_none()), (number == 0, number == hops), "{stance}");
+        for foot in stance["contacts"].as_array().unwrap() {
+            assert_eq!(foot["joints"]["joints"].as_array().map(Vec::len), Some(3), "{foot}");
+        }
+        for push in ["landing", "takeoff"].iter().filter_map(|key| stance.get(*key)) {
+            for foot in push["feet"].as_array().unwrap() {
+                assert!(foot["effort_share"].as_f64().unwrap() > 0.0 && foot["contact_s"].as_f64().unwrap() >= 0.0, "{foot}");
+            }
+        }
+    }
+    for name in ["path.csv", "path.svg", "path.geojson", "postures.svg", "simulation.json"] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+    let svg = std::fs::read_to_string(out.join("postures.svg")).unwrap();
+    assert!(svg.contains("last contact") && svg.contains("Hop 1 of") && svg.contains("limbs by their joints"), "{}", svg.len());
+    let late = [&["plan", scenario, "--plot-postures", "p.svg", "--postures-from", "99"], &words[..]].concat();
+    let (status, _, stderr) = chta(root(), &late);
+    assert!(status == 2 && stderr.contains("--postures-from: found 99, expected a hop of the path, 1 to"), "{status} {stderr}");
+    let point = ["plan", "data/scenarios/simple.toml", "--plot-postures", "p.svg"];
+    let (status, _, stderr) = chta(root(), &point);
+    assert!(status == 2 && stderr.contains("the scenario names none, expected robot.file on a free route"), "{status} {stderr}");
+    assert!(!root().join("p.svg").exists());
 }

@@ -38,6 +38,7 @@ mod gdal_feature;
 mod graph;
 mod heading_steps;
 mod layers;
+mod legs_joints;
 mod legs_scenes;
 mod map_equality;
 mod map_layers;

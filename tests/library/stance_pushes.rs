@@ -6,8 +6,8 @@ use chta::{
     ballistics::{
         LineOfSight,
         stance::{
-            Bounds, ConeSum, ContactCone, Foothold, Limb, PlaneCut, greatest_force_n, greatest_push_speed_m_s, holds_upright,
-            least_spin_m2_s, push_force_n, push_slope, spin_free_cut,
+            Bounds, ConeSum, ContactCone, Foothold, Limb, PlaneCut, forces_of_least_spin, greatest_force_n,
+            greatest_push_speed_m_s, holds_upright, least_spin_m2_s, push_force_n, push_slope, spin_free_cut,
         },
     },
     world::FrictionCone,
@@ -384,4 +384,37 @@ fn limbs_without_strength_are_refused() {
     assert!(greatest_push_speed_m_s(&[], Vector3::z(), 0.2, 5.0, 1.0).is_none());
     assert!(least_spin_m2_s(&[], Vector3::z()).is_none());
     assert_eq!(spin_free_cut(&[], Vector2::x()), PlaneCut::Nothing);
+}
+
+/// Each of the forces lies in its cone, they add up to the push, and their moment is the least.
+#[test]
+fn the_forces_of_least_spin_add_up_and_spin_as_little_as_the_bound_says() {
+    let draw = &mut Draw::seeded(95);
+    let (mut found, mut none) = (0, 0);
+    for _ in 0..3_000 {
+        let footholds = footholds(draw);
+        let push = direction(draw) * draw.log_uniform(1e-3, 1e3);
+        let (Some(forces), Some(bounds)) = (forces_of_least_spin(&footholds, push), least_spin_m2_s(&footholds, push)) else {
+            let cones: Vec<ContactCone> = footholds.iter().map(|foot| foot.cone).collect();
+            // Only beside the cone, or so near to its edge that no forces were found to 1e-7.
+            let inside = ConeSum::new(&cones).contains(push * 1.0);
+            assert!(!inside || least_spin_m2_s(&footholds, push).is_some_and(|bounds| bounds.upper.is_infinite()));
+            none += 1;
+            continue;
+        };
+        found += 1;
+        let arm_m = footholds.iter().map(|foot| foot.arm_m.norm()).fold(0.0, f64::max);
+        let size = forces.iter().map(Vector3::norm).sum::<f64>();
+        for (foot, force) in footholds.iter().zip(&forces) {
+            let normal = foot.cone.normal();
+            let up = force.dot(&normal);
+            let aside = (force - normal * up).norm();
+            assert!(aside <= foot.cone.friction().coefficient() * up + 1e-9 * size, "{force} {foot:?}");
+        }
+        let sum: Vector3<f64> = forces.iter().sum();
+        assert!((sum - push).norm() <= 2e-7 * push.norm() + 1e-12 * size, "{sum} {push}");
+        let moment = spin(&footholds, &forces).norm();
+        assert!((moment - bounds.upper).abs() <= 1e-6 * push.norm() * arm_m + 1e-9 * size * arm_m, "{moment} {bounds:?}");
+    }
+    assert!(found > 500 && none > 200, "{found} {none}");
 }

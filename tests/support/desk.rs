@@ -28,6 +28,7 @@ pub(crate) const FORWARD_ONLY: &str = "x_m,z_m,takeoff_min_deg,takeoff_max_deg,t
 
 /// A robot with four legs.
 pub(crate) const FOUR_LEGS: &str = include_str!("../../data/robots/four_legs.toml");
+const FOUR_LEGS_URDF: &str = include_str!("../../data/robots/four_legs.urdf");
 
 /// A floor with a box across it, which only a jump crosses.
 pub(crate) const ACROSS: &str = "[arena]\nsize_m = [9, 6]\nstart_m = [1, 3]\ngoal_m = [8, 4]\n\n[jumper]\nspeed_m_s = 1.5\nwheelbase_m = 0.2\n\
@@ -94,6 +95,12 @@ impl Desk {
 
     pub(crate) fn path(&self) -> &Path {
         self.folder.path()
+    }
+
+    /// Writes a robot that names the joints of the one with four legs, and these.
+    pub(crate) fn write_legs(&self, name: &str, robot: &str) {
+        self.write(name, robot);
+        self.write("four_legs.urdf", FOUR_LEGS_URDF);
     }
 
     pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) {

@@ -30,5 +30,5 @@ pub use contact_cone::{ContactCone, InvalidContactCone};
 pub use foothold::{Bounds, Foothold};
 pub use force::{InvalidForce, Limb, greatest_force_n};
 pub use plane_cut::PlaneCut;
-pub use spin::{holds_upright, least_spin_m2_s, spin_free_cut};
+pub use spin::{forces_of_least_spin, holds_upright, least_spin_m2_s, spin_free_cut};
 pub use stroke::{greatest_push_speed_m_s, push_force_n, push_slope};

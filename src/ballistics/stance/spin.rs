@@ -63,9 +63,39 @@ const FORCES_MAX: f64 = 1e3;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn least_spin_m2_s(footholds: &[Foothold], velocity_m_s: Vector3<f64>) -> Option<Bounds> {
+    Some(least_spin(footholds, velocity_m_s)?.0)
+}
+
+/// Forces of the contacts that add up to a push and leave the least moment about the centre of mass: one for each contact, in their order and in the
+/// unit of the push.
+///
+/// A stance with several contacts mostly has many such forces, of which these are one choice.
+///
+/// # Returns
+/// `None` if no push without sliding was found that gives the push to 1e-7 of it.
+///
+/// # Examples
+/// ```
+/// use chta::{ballistics::stance::{ContactCone, Foothold, forces_of_least_spin}, world::FrictionCone};
+/// use nalgebra::Vector3;
+/// // A weight of 30 N on two feet, 0.1 m behind and 0.2 m ahead of the centre of mass: by the lever, two thirds rest on the one behind.
+/// let cone = ContactCone::new(Vector3::z(), FrictionCone::new(0.5)?)?;
+/// let foot = |x| Foothold { cone, arm_m: Vector3::new(x, 0.0, -0.4) };
+/// let forces = forces_of_least_spin(&[foot(-0.1), foot(0.2)], Vector3::new(0.0, 0.0, 30.0)).unwrap();
+/// assert!((forces[0].z - 20.0).abs() < 1e-5 && (forces[1].z - 10.0).abs() < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn forces_of_least_spin(footholds: &[Foothold], push: Vector3<f64>) -> Option<Vec<Vector3<f64>>> {
+    let (bounds, forces) = least_spin(footholds, push)?;
+    bounds.upper.is_finite().then_some(forces)
+}
+
+/// The least spin of a push, and the forces of one that was found.
+fn least_spin(footholds: &[Foothold], velocity_m_s: Vector3<f64>) -> Option<(Bounds, Vec<Vector3<f64>>)> {
     let speed_m_s = velocity_m_s.norm();
     if speed_m_s == 0.0 {
-        return (!footholds.is_empty()).then_some(Bounds { lower: 0.0, upper: 0.0 });
+        let forces = vec![Vector3::zeros(); footholds.len()];
+        return (!footholds.is_empty()).then_some((Bounds { lower: 0.0, upper: 0.0 }, forces));
     }
     let velocity = velocity_m_s / speed_m_s;
     if !sum(footholds).contains(velocity) {
@@ -75,14 +105,14 @@ pub fn least_spin_m2_s(footholds: &[Foothold], velocity_m_s: Vector3<f64>) -> Op
     let weigh = |force: Vector3<f64>| force * FORCE_WEIGHT;
     let mut lower = 0.0f64;
     let mut asked_force = velocity;
-    let mut upper = f64::INFINITY;
+    let (mut upper, mut forces) = (f64::INFINITY, Vec::new());
     for _ in 0..CORRECTIONS_MAX {
         let asked = weigh(asked_force);
         let nearest = cone.nearest(Vector6::new(asked.x, asked.y, asked.z, 0.0, 0.0, 0.0));
         let force = nearest.wrench.fixed_rows::<3>(0) / FORCE_WEIGHT;
         let spin = nearest.wrench.fixed_rows::<3>(3).norm();
         lower = lower.max(proved(&nearest, velocity));
-        upper = spin;
+        (upper, forces) = (spin, nearest.forces);
         let short = velocity - force;
         if short.norm() > REACHED {
             upper = f64::INFINITY;
@@ -95,7 +125,8 @@ pub fn least_spin_m2_s(footholds: &[Foothold], velocity_m_s: Vector3<f64>) -> Op
     }
     // The bounds of one number may pass each other by what the force is missing.
     let scale = speed_m_s * cone.arm_m;
-    Some(Bounds { lower: lower.min(upper) * scale, upper: upper * scale })
+    forces.iter_mut().for_each(|force| *force *= speed_m_s);
+    Some((Bounds { lower: lower.min(upper) * scale, upper: upper * scale }, forces))
 }
 
 /// The spin that what is missing to a push proves, for a unit velocity and a unit arm.

@@ -31,10 +31,14 @@ pub(super) struct Nearest {
     pub(super) wrench: Vector6<f64>,
     /// By how much a wrench of a unit force exceeds those 90 degrees: its greatest product with what is missing, 0 but for rounding.
     pub(super) gain: f64,
+    /// The force of each contact, in their order, that add up to the nearest wrench but for rounding.
+    pub(super) forces: Vec<Vector3<f64>>,
 }
 
 /// A unit force of one contact, as a wrench, and how much of it is used.
 struct Column {
+    foot: usize,
+    force: Vector3<f64>,
     wrench: Vector6<f64>,
     amount: f64,
 }
@@ -52,12 +56,13 @@ impl<'a> WrenchCone<'a> {
     }
 
     /// The force at a contact whose wrench has the greatest product with a wrench, for each unit of force, and that product.
-    fn best(&self, missing: &Vector6<f64>) -> Option<(f64, Vector6<f64>)> {
+    fn best(&self, missing: &Vector6<f64>) -> Option<(f64, Column)> {
         let (force, moment) = (missing.fixed_rows::<3>(0).into_owned(), missing.fixed_rows::<3>(3).into_owned());
-        let tried = self.footholds.iter().filter_map(|foot| {
+        let tried = self.footholds.iter().enumerate().filter_map(|(number, foot)| {
             let along = force * self.weight + moment.cross(&foot.arm_m) / self.arm_m;
-            let wrench = (along.norm_squared() > 0.0).then(|| self.wrench(foot, foot.cone.best(along)))?;
-            Some((wrench.dot(missing), wrench))
+            let force = (along.norm_squared() > 0.0).then(|| foot.cone.best(along))?;
+            let wrench = self.wrench(foot, force);
+            Some((wrench.dot(missing), Column { foot: number, force, wrench, amount: 0.0 }))
         });
         tried.max_by(|one, other| one.0.total_cmp(&other.0))
     }
@@ -71,24 +76,29 @@ impl<'a> WrenchCone<'a> {
     pub(super) fn nearest(&self, asked: Vector6<f64>) -> Nearest {
         let mut columns: Vec<Column> = Vec::new();
         let mut missing = asked;
-        let mut nearest = Nearest { missing, wrench: Vector6::zeros(), gain: f64::INFINITY };
+        let mut nearest = Nearest { missing, wrench: Vector6::zeros(), gain: f64::INFINITY, forces: Vec::new() };
         let mut idle = 0;
         for _ in 0..ROUNDS_MAX {
-            let (gain, wrench) = self.best(&missing).unwrap_or((0.0, Vector6::zeros()));
+            let found = self.best(&missing);
+            let gain = found.as_ref().map_or(0.0, |(gain, _)| *gain);
             if gain < nearest.gain {
-                nearest = Nearest { missing, wrench: asked - missing, gain: gain.max(0.0) };
+                (nearest.missing, nearest.wrench, nearest.gain) = (missing, asked - missing, gain.max(0.0));
                 idle = 0;
             } else {
                 idle += 1;
             }
-            if gain <= GAIN_TOLERANCE * asked.norm() || idle > IDLE_ROUNDS_MAX {
+            let Some((_, column)) = found.filter(|_| gain > GAIN_TOLERANCE * asked.norm() && idle <= IDLE_ROUNDS_MAX) else {
                 break;
-            }
-            columns.push(Column { wrench, amount: 0.0 });
+            };
+            columns.push(column);
             if !settle(&mut columns, &asked) {
                 break;
             }
             missing = columns.iter().fold(asked, |rest, column| rest - column.wrench * column.amount);
+        }
+        nearest.forces = vec![Vector3::zeros(); self.footholds.len()];
+        for column in &columns {
+            nearest.forces[column.foot] += column.force * column.amount;
         }
         nearest
     }

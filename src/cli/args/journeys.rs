@@ -130,6 +130,12 @@ pub(crate) struct PlanArgs {
     /// Picture of the front (SVG or PNG) to write
     #[arg(long, value_name = "FILE", requires = "front")]
     pub(crate) plot_front: Option<PathBuf>,
+    /// Picture (SVG or PNG) to write of a robot with legs: its key postures hop by hop, five hops from that of --postures-from on
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot_postures: Option<PathBuf>,
+    /// First hop of the picture of postures
+    #[arg(long, value_name = "HOP", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..), requires = "plot_postures")]
+    pub(crate) postures_from: u32,
     /// Of a scenario with [drive]: the same journey by driving alone, by hops alone and by both, and the fewest hops that make it possible
     #[arg(long)]
     pub(crate) alternatives: bool,
@@ -151,6 +157,16 @@ pub(crate) struct PlanArgs {
 
 impl PlanArgs {
     /// Refuses alternatives of a scenario that does not drive.
+    pub(crate) fn refuse_postures(&self) -> Result<(), Failure> {
+        if self.plot_postures.is_some() {
+            let text = "--plot-postures: found this option, which draws the trunk and the limbs of a robot, and the scenario names none, expected \
+                        robot.file on a free route: leave the option out, or set robot.file";
+            return Err(Failure::message(text.to_owned()));
+        }
+        Ok(())
+    }
+
+    /// Refuses the alternatives of a mission that drives.
     pub(crate) fn refuse_alternatives(&self) -> Result<(), Failure> {
         if self.alternatives {
             let text = "--alternatives: found this option for a scenario that does not drive, expected [drive] with travel = \"both\" or \"drive\": \

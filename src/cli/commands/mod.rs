@@ -21,6 +21,7 @@ mod plan_targets;
 mod plan_travel;
 pub(super) mod require;
 pub(super) mod run;
+mod run_legs;
 mod run_over_mesh;
 mod run_targets;
 mod run_travel;

@@ -29,6 +29,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
         return plan_over_mesh::run(args, &input);
     }
     args.roadmap.refuse()?;
+    args.refuse_postures()?;
     let loaded =
         load_journey(&args.journey, &args.common, &args.search, Purpose::Plan, &[])?.within_memory(args.size.memory_max_bytes())?;
     loaded.ends()?;

@@ -2,6 +2,7 @@
 
 use chta::{
     report::{DocumentKind, MapKnowledge, legs_plan_text, write_path_csv},
+    scenario::TerrainSource,
     study::{LegsRouteQuestion, legs_route},
 };
 
@@ -10,7 +11,7 @@ use crate::cli::{
     args::PlanArgs,
     load::MeshPlanInput,
     not_on_mesh,
-    output::{self, TableFormat},
+    output::{self, Pending, TableFormat},
     progress::Progress,
     views::{Files, Table, Views},
 };
@@ -18,7 +19,6 @@ use crate::cli::{
 /// Plans a route of a robot with legs.
 pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
     not_on_mesh::refuse_for_legs(&[
-        ("--geojson", args.geojson.is_some(), "writes the path of a point on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
         ("--plot-front", args.plot_front.is_some(), "draws a front over a DEM or a profile"),
         ("--prove", args.prove.prove, "bounds the hops along a profile"),
@@ -29,17 +29,32 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
         ("--roadmap-output", args.roadmap.roadmap_output.is_some(), "writes contacts of a point"),
     ])?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
+    let plot_postures = output::begin_picture("--plot-postures", args.plot_postures.as_deref())?;
+    let is_over_mesh = matches!(input.scenario.terrain, Some(TerrainSource::MeshInSpace { .. }));
+    if args.geojson.is_some() && is_over_mesh {
+        not_on_mesh::refuse(&[("--geojson", true, "writes a path on a map")])?;
+    }
+    let geojson = args.geojson.as_deref().map(Pending::begin).transpose()?;
     let mut table = Table::begin(args.output.as_deref(), TableFormat::Csv)?;
     let question = LegsRouteQuestion { scenario: &input.scenario, base: &input.base };
     let routed = legs_route(question, &Progress::new(args.common.quiet)).map_err(|error| Failure::about(&input.mesh, &error))?;
     output::warn_all(args.common.quiet, &routed.warnings);
+    let hops = routed.answer.plan.path.len();
+    if routed.path.is_some() && args.postures_from as usize > hops {
+        return Err(Failure::message(format!(
+            "--postures-from: found {}, expected a hop of the path, 1 to {hops}",
+            args.postures_from
+        )));
+    }
     let views = Views {
         text: &|| legs_plan_text(&routed.answer),
-        json: &|| input.document_on_map(DocumentKind::PlanLegs, routed.crs.as_ref(), &routed.warnings, &routed.answer),
+        json: &|| input.document_on_map(DocumentKind::PlanLegs, routed.crs().as_ref(), &routed.warnings, &routed.answer),
         csv: &|out| write_path_csv(&routed.answer.plan.path, MapKnowledge::Metres, out),
     };
     let mut files = Files::default();
     files.picture(plot, || Some(routed.picture(&input.scenario, args.view.direction())))?;
+    files.picture(plot_postures, || routed.postures_picture(&input.scenario, args.postures_from as usize))?;
+    files.geojson_on(geojson, routed.geojson(), routed.projection.as_ref())?;
     files.table(&mut table, &views)?;
     files.finish()?;
     views.show(args.answer.format, table.to_stdout)?;

@@ -20,6 +20,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
     if input.scenario.legs.file.is_some() {
         return super::plan_legs::run(args, input);
     }
+    args.refuse_postures()?;
     not_on_mesh::refuse(&[
         ("--geojson", args.geojson.is_some(), "writes a path on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),

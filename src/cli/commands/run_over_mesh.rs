@@ -12,6 +12,9 @@ use crate::cli::{
 
 /// Plans a free route over a mesh, flies its trials, and writes the results into a folder.
 pub(super) fn run(args: &RunArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
+    if input.scenario.legs.file.is_some() {
+        return super::run_legs::run(args, input);
+    }
     not_on_mesh::refuse(&[("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile")])?;
     output::check_folder(&args.output)?;
     let mut folder = RunFolder::new(&args.output, None)?;

@@ -31,6 +31,7 @@ pub(crate) fn run(args: &StanceArgs) -> Result<Answer, Failure> {
         base: &input.base,
         terrain: &input.terrain,
         robot: input.robot.clone(),
+        chains: &input.chains,
         at_m: input.at_m,
         heading_deg: args.heading_deg,
         height_m: args.height_m,

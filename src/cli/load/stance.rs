@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use chta::{
     quantity::MapPoint,
     report::{Document, DocumentKind},
+    robot_model::LimbChain,
     scenario::{FileKind, RobotFileError, Scenario, read_robot, scenario_document},
     study::{CaseRecord, StanceTerrain, checksums},
     terrain::DemOptions,
@@ -33,6 +34,8 @@ pub(crate) struct StanceInput {
     pub(crate) file: PathBuf,
     /// The robot.
     pub(crate) robot: Robot,
+    /// The joints of its limbs.
+    pub(crate) chains: Vec<Option<LimbChain>>,
     /// Where it stands, m.
     pub(crate) at_m: (MapPoint, Option<f64>),
     /// The scenario as used, without terrain.
@@ -120,6 +123,7 @@ pub(crate) fn load_stance(args: &StanceArgs) -> Result<StanceInput, Failure> {
         terrain: ground,
         file: input.file,
         robot: robot.robot,
+        chains: robot.chains,
         at_m,
         scenario,
         base,

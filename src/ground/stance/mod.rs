@@ -19,6 +19,7 @@
 mod clip;
 mod flight;
 mod foothold;
+mod joints;
 mod map;
 mod pose;
 mod push;
@@ -30,6 +31,7 @@ use std::sync::Arc;
 use nalgebra::{Point3, Vector3};
 
 pub use foothold::{Foothold, LimbOutcome};
+pub use joints::{FootPush, JointReach};
 pub use map::StanceMap;
 pub use pose::Pose;
 pub use stand::{NoStance, Stance, TrunkHit};
@@ -37,6 +39,7 @@ pub use stand::{NoStance, Stance, TrunkHit};
 use super::{MeshBuffers, MeshGround};
 use crate::{
     ballistics::stance::ConeKind,
+    robot_model::LimbChain,
     world::{Robot, TrunkBox},
 };
 
@@ -51,6 +54,8 @@ pub struct StanceGround {
     cone: ConeKind,
     up: StandsUp,
     map: Option<Arc<StanceMap>>,
+    /// The joints of the limbs; empty where none are known.
+    chains: Arc<[Option<LimbChain>]>,
 }
 
 /// Which way is up for a trunk that stands on the ground.
@@ -93,7 +98,7 @@ impl StanceGround {
     /// [`NoFriction`], unless the robot is a point.
     pub fn new(mesh: MeshGround, robot: impl Into<Arc<Robot>>, cone: ConeKind, up: StandsUp) -> Result<Self, NoFriction> {
         let robot = robot.into();
-        let ground = Self { mesh, robot, cone, up, map: None };
+        let ground = Self { mesh, robot, cone, up, map: None, chains: Arc::default() };
         match ground.mesh.surface().constant_friction() {
             _ if ground.is_point() => Ok(ground),
             Some(friction) if friction.coefficient() > 0.0 => Ok(ground),

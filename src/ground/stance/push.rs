@@ -57,7 +57,7 @@ impl StanceGround {
         Some(most * inertia / self.mass_kg().unwrap_or(1.0))
     }
 
-    fn mass_kg(&self) -> Option<f64> {
+    pub(super) fn mass_kg(&self) -> Option<f64> {
         self.mesh().envelope().hopper().limits().mass_kg.or(self.robot().mass_kg())
     }
 
@@ -73,15 +73,21 @@ impl StanceGround {
             return None;
         }
         let g = self.mesh().envelope().gravity_m_s2();
-        let ahead = velocity_m_s.xy().norm();
-        let along = velocity_m_s.xy().try_normalize(0.0).unwrap_or_else(Vector2::x);
-        let force = push_force_n(velocity_m_s.z / ahead.max(f64::MIN_POSITIVE), speed_m_s, stroke_m, g);
-        if !cone.contains(Vector3::new(along.x * force.x, along.y * force.x, force.y)) {
+        if !cone.contains(self.force_of_push_n(velocity_m_s, stroke_m)) {
             return Some(Limit::Stroke);
         }
         let (limbs, mass_kg) = (self.limbs(stance)?, self.mass_kg()?);
         let most = greatest_push_speed_m_s(&limbs, velocity_m_s / speed_m_s, stroke_m, mass_kg, g);
         most.is_none_or(|most| most.lower < speed_m_s).then_some(Limit::Force)
+    }
+
+    /// The force of the feet in sum at the end of a straight push over a stroke, N for each kg.
+    pub(super) fn force_of_push_n(&self, velocity_m_s: Vector3<f64>, stroke_m: f64) -> Vector3<f64> {
+        let g = self.mesh().envelope().gravity_m_s2();
+        let ahead = velocity_m_s.xy().norm();
+        let along = velocity_m_s.xy().try_normalize(0.0).unwrap_or_else(Vector2::x);
+        let force = push_force_n(velocity_m_s.z / ahead.max(f64::MIN_POSITIVE), velocity_m_s.norm(), stroke_m, g);
+        Vector3::new(along.x * force.x, along.y * force.x, force.y)
     }
 
     /// The spin, if it refuses a push.
