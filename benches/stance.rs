@@ -1,5 +1,6 @@
 //! The cone of a stance: prepared, and cut by the plane of a heading; beside a plain version that sums pyramids by brute force. The bounds of
-//! spin and force, and the trunk along an arc.
+//! spin and force, and the trunk along an arc. And whole stances of four limbs on a mesh of 47 733 triangles, which is read from a folder beside the
+//! repository, beside a plain version that looks at every facet.
 //!
 //! `cargo bench --bench stance`. Compare lines of one run with each other: absolute times depend on the machine and its load. Arguments are
 //! numbers of contacts. Half of the stances are on rough ground, half against a wall as well. The plain version forms all sums of two edges of
@@ -9,13 +10,19 @@
 
 use std::f64::consts::TAU;
 
+use std::path::Path;
+
 use chta::{
     ballistics::{
         BoxFlight,
         stance::{ConeKind, ConeSum, ContactCone, Foothold, Limb, PyramidEdges, greatest_force_n, least_spin_m2_s},
     },
+    ground::{MeshContact, MeshGround, Pose, StanceGround, StandsUp},
+    planner::roadmap::ContactSampler,
     quantity::SlopeInterval,
-    world::FrictionCone,
+    scenario::read_robot,
+    terrain::{MeshTree, read_mesh},
+    world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
 use divan::{Bencher, black_box, counter::ItemsCount};
 use nalgebra::{Point3, Rotation3, Vector2, Vector3};
@@ -182,5 +189,61 @@ fn box_in_flight(bencher: Bencher<'_, '_>) {
         .collect();
     bencher.counter(ItemsCount::new(STANCES)).bench_local(|| {
         triangles.iter().filter(|triangle| flight.contact_times(black_box(triangle), [0.0, 3.75]).first_s().is_some()).count()
+    });
+}
+
+/// The desert of Campana and others 2016, and poses over it; `None` where it is absent.
+fn desert() -> Option<(StanceGround, Vec<Pose>)> {
+    let file = Path::new("../shared/limbs/scenes/desert_47733.stl");
+    if !file.exists() {
+        eprintln!("skipped: {} is absent", file.display());
+        return None;
+    }
+    let mesh = MeshTree::new(read_mesh(file, 1.0).expect("a mesh").mesh);
+    let friction = FrictionCone::new(0.8).expect("a friction");
+    let surface = SurfaceProperties { grip: Some(Grip::Friction(friction)), rest: RestSlope::Unlimited };
+    let hopper = Hopper::with_speeds(5.0, 5.0).expect("a hopper");
+    let mesh = MeshGround::new(mesh, &hopper, Gravity::new(3.7).expect("a gravity"), &surface).expect("a ground");
+    let robot = read_robot(Path::new("data/robots/four_legs.toml")).expect("the shipped robot").robot;
+    let mut sampler = ContactSampler::new(&mesh, None, 0.0, 5).expect("facets");
+    let contacts: Vec<MeshContact> = sampler.all_over(200, &|_| true);
+    let ground = StanceGround::new(mesh.clone(), robot, ConeKind::Exact, StandsUp::Normal).expect("friction");
+    let poses = contacts.iter().map(|contact| {
+        let normal: Vector3<f64> = contact.facets().iter().map(|facet| facet.normal).sum();
+        let up = ground.up_over(normal);
+        Pose::facing(contact.point_m() + up * 0.2, up, Vector2::x())
+    });
+    let poses = poses.collect();
+    Some((ground, poses))
+}
+
+/// Feet, cone and trunk of a robot with four limbs in 200 poses; how many of them stand is the same in each run.
+#[divan::bench(sample_count = 20, sample_size = 1)]
+fn stand_four_limbs(bencher: Bencher<'_, '_>) {
+    let Some((ground, poses)) = desert() else { return };
+    bencher
+        .counter(ItemsCount::new(poses.len()))
+        .bench_local(|| poses.iter().filter(|pose| ground.stand(**black_box(pose)).is_ok()).count());
+}
+
+/// The least that a search without a tree does: every facet is put into the trunk frame, and those whose middle a limb reaches are counted.
+#[divan::bench(sample_count = 5, sample_size = 1)]
+fn stand_plain(bencher: Bencher<'_, '_>) {
+    let Some((ground, poses)) = desert() else { return };
+    let poses = &poses[..20];
+    bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
+        let reached = |pose: &Pose| {
+            let mut found = 0;
+            ground.mesh().tree().visit(
+                |_, _| true,
+                |_, corners| {
+                    let middle =
+                        Point3::from(corners.iter().map(|corner| pose.to_trunk(corner).coords).sum::<Vector3<f64>>() / 3.0);
+                    found += ground.robot().limbs().iter().filter(|limb| limb.reaches(&middle)).count();
+                },
+            );
+            found
+        };
+        poses.iter().map(|pose| reached(black_box(pose))).sum::<usize>()
     });
 }

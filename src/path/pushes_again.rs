@@ -110,7 +110,7 @@ mod tests {
     fn foot(normal: Vector3<f64>, mu: f64) -> Foothold {
         let friction = FrictionCone::new(mu).unwrap();
         let (point_m, facet) = (Point3::origin(), FacetId(0));
-        Foothold { limb: 0, point_m, normal, facet, friction, spread: Angle::from_degrees(0.0), area_m2: 1.0 }
+        Foothold { limb: 0, point_m, normal, facet, friction, spread: Angle::from_degrees(0.0), worst_normal: normal, area_m2: 1.0 }
     }
 
     /// Directions on the edge of the sum of cones, where projections onto one cone after another do not end, and beside it.

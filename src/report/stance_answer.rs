@@ -92,6 +92,8 @@ pub struct FootRecord {
     pub friction_coefficient: Option<f64>,
     /// The greatest angle between that normal and one of the facets within reach that it stands for, degrees.
     pub spread_deg: Option<f64>,
+    /// The normal of that facet: the worst that the foot may meet, where the mean hides a ridge.
+    pub worst_normal: Option<[f64; 3]>,
     /// Their area, m^2.
     pub area_m2: Option<f64>,
     /// The joints that put it there; absent where they are not known.
@@ -181,6 +183,7 @@ impl FootRecord {
             normal: Some(foothold.normal.into()),
             friction_coefficient: Some(foothold.friction.coefficient()),
             spread_deg: Some(foothold.spread.degrees()),
+            worst_normal: Some(foothold.worst_normal.into()),
             area_m2: Some(foothold.area_m2),
             joints: FootJointsRecord::of(ground, pose, foothold),
         }
@@ -194,6 +197,7 @@ impl FootRecord {
             normal: None,
             friction_coefficient: None,
             spread_deg: None,
+            worst_normal: None,
             area_m2: None,
             joints: None,
         }
@@ -207,6 +211,7 @@ impl FootRecord {
             normal: Some(contact.normal().into()),
             friction_coefficient: Some(contact.friction().coefficient()),
             spread_deg: None,
+            worst_normal: None,
             area_m2: None,
             joints: None,
         }

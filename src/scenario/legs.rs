@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Entries, ProblemKind, read::find};
+use super::{Entries, LayerKeys, ProblemKind, read::find};
 use crate::{ballistics::stance::ConeKind, ground::StandsUp};
 
 /// A robot with legs.
@@ -36,4 +36,25 @@ pub(super) fn legs(entries: &mut Entries) -> LegsKeys {
         }
     }
     keys
+}
+
+/// Reports what a robot with legs does not do: it neither drives nor visits targets, and leaves no layer for a while.
+pub(super) fn check(entries: &mut Entries, legs: &LegsKeys, (drives, visits): (bool, bool), layers: &[LayerKeys]) {
+    if legs.file.is_none() {
+        return;
+    }
+    let mut refuse = |what: &str, help: &str| {
+        let message = format!("robot.file names a robot with legs, which hops from stance to stance, beside {what}");
+        entries.problem(("robot", "file"), ProblemKind::Conflict, message, help);
+    };
+    if drives {
+        refuse("[drive], the wheels of a rover", "remove [drive], or robot.file for a hopper that is a point");
+    }
+    if visits {
+        refuse("[mission], the targets of a hopper", "remove [mission], or robot.file for a hopper that is a point");
+    }
+    if let Some(layer) = layers.iter().find(|layer| layer.rule.outage.is_some()) {
+        let what = format!("layer.{}, which may be left for a while", layer.rule.name);
+        refuse(&what, "remove the keys of the outage, so that the layer holds throughout, or remove robot.file");
+    }
 }

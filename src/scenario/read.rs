@@ -136,6 +136,7 @@ impl Scenario {
         let drives = drive.as_ref().is_some_and(|keys| keys.travel.drives());
         super::layers::check_outages(&mut entries, &layers, route, drives);
         let mission = super::mission::mission(&mut entries, terrain.as_ref(), route, drives);
+        super::legs::check(&mut entries, &legs, (drives, mission.is_some()), &layers);
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
         let budget = super::budget::budget(&entries);
         let (objective, commands, wanted_angle) =

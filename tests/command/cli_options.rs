@@ -536,7 +536,7 @@ const CHECK: [Trial; 16] = [
     ("--quiet", &["check", "scenario.toml", "--body", "bennu"], &["check", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-const PLAN: [Trial; 24] = [
+const PLAN: [Trial; 26] = [
     (
         "--seen-from",
         &["plan", "space.toml", "--plot", "path.svg"],

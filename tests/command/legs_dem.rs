@@ -328,6 +328,22 @@ fn what_makes_no_stance_is_named() {
     plan("robot.file=none.toml", &["none.toml:1:2", "limb is absent, expected at least one limb"]);
     desk.write("inside_out.toml", light().replace("size_m = [0.46, 0.2, 0.12]", "size_m = [-0.46, 0.2, 0.12]"));
     plan("robot.file=inside_out.toml", &["trunk box 1: size_m is [-0.46, 0.2, 0.12], expected three finite numbers above 0"]);
+    // What a robot with legs does not do is refused with the scenario, not left out.
+    plan("drive.travel=both", &["[drive] is given without drive.speed_m_s"]);
+    let refused = |keys: &[&str], parts: &[&str]| {
+        let words: Vec<&str> = ["plan", "plan.toml"].into_iter().chain(keys.iter().flat_map(|key| ["--set", key])).collect();
+        desk.refused(&words, parts);
+    };
+    refused(
+        &["drive.speed_m_s=0.1", "drive.slope_up_max_deg=20"],
+        &["robot.file names a robot with legs, which hops from stance to stance, beside [drive]", "remove [drive]"],
+    );
+    refused(&["mission.targets_m=[[6, 6], [9, 9]]"], &["beside [mission], the targets of a hopper", "remove [mission]"]);
+    desk.write("sun.asc", "ncols 2\nnrows 2\nxllcenter -1\nyllcenter -1\ncellsize 22\n1 1\n1 1\n");
+    refused(
+        &["layer.sun.raster=\"sun.asc\"", "layer.sun.min=1", "layer.sun.outage_hops_max=2"],
+        &["beside layer.sun, which may be left for a while", "remove the keys of the outage"],
+    );
     // A mesh whose corners go round the other way: its outer side is below.
     desk.write("inverted.obj", "v -3 -3 0\nv 3 -3 0\nv 3 3 0\nv -3 3 0\nf 1 4 3\nf 1 3 2\n");
     let inverted = desk.run(&["stance", "inverted.obj", "--at=0,0,0.1", "--scenario", "plan.toml"]);

@@ -156,7 +156,22 @@ pub(crate) struct PlanArgs {
 }
 
 impl PlanArgs {
-    /// Refuses alternatives of a scenario that does not drive.
+    /// The first hop of the picture of postures, on a path of so many hops.
+    pub(crate) fn first_posture(&self, hops: usize) -> Result<usize, Failure> {
+        let first = self.postures_from as usize;
+        if hops > 0 && first > hops {
+            return Err(Failure::message(format!("--postures-from: found {first}, expected a hop of the path, 1 to {hops}")));
+        }
+        Ok(first)
+    }
+
+    /// Refuses what is about facets alone: a roadmap, and the postures of a robot with legs.
+    pub(crate) fn refuse_of_facets(&self) -> Result<(), Failure> {
+        self.roadmap.refuse()?;
+        self.refuse_postures()
+    }
+
+    /// Refuses the postures of a hopper without legs.
     pub(crate) fn refuse_postures(&self) -> Result<(), Failure> {
         if self.plot_postures.is_some() {
             let text = "--plot-postures: found this option, which draws the trunk and the limbs of a robot, and the scenario names none, expected \
@@ -166,7 +181,7 @@ impl PlanArgs {
         Ok(())
     }
 
-    /// Refuses the alternatives of a mission that drives.
+    /// Refuses alternatives of a scenario that does not drive.
     pub(crate) fn refuse_alternatives(&self) -> Result<(), Failure> {
         if self.alternatives {
             let text = "--alternatives: found this option for a scenario that does not drive, expected [drive] with travel = \"both\" or \"drive\": \

@@ -28,8 +28,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     if let Some(input) = load_mesh_plan(&args.journey, &args.common, &args.search, Purpose::Plan, &[])? {
         return plan_over_mesh::run(args, &input);
     }
-    args.roadmap.refuse()?;
-    args.refuse_postures()?;
+    args.refuse_of_facets()?;
     let loaded =
         load_journey(&args.journey, &args.common, &args.search, Purpose::Plan, &[])?.within_memory(args.size.memory_max_bytes())?;
     loaded.ends()?;

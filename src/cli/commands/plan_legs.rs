@@ -39,13 +39,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
     let question = LegsRouteQuestion { scenario: &input.scenario, base: &input.base };
     let routed = legs_route(question, &Progress::new(args.common.quiet)).map_err(|error| Failure::about(&input.mesh, &error))?;
     output::warn_all(args.common.quiet, &routed.warnings);
-    let hops = routed.answer.plan.path.len();
-    if routed.path.is_some() && args.postures_from as usize > hops {
-        return Err(Failure::message(format!(
-            "--postures-from: found {}, expected a hop of the path, 1 to {hops}",
-            args.postures_from
-        )));
-    }
+    let first = args.first_posture(routed.answer.plan.path.len())?;
     let views = Views {
         text: &|| legs_plan_text(&routed.answer),
         json: &|| input.document_on_map(DocumentKind::PlanLegs, routed.crs().as_ref(), &routed.warnings, &routed.answer),
@@ -53,7 +47,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
     };
     let mut files = Files::default();
     files.picture(plot, || Some(routed.picture(&input.scenario, args.view.direction())))?;
-    files.picture(plot_postures, || routed.postures_picture(&input.scenario, args.postures_from as usize))?;
+    files.picture(plot_postures, || routed.postures_picture(&input.scenario, first))?;
     files.geojson_on(geojson, routed.geojson(), routed.projection.as_ref())?;
     files.table(&mut table, &views)?;
     files.finish()?;

@@ -37,6 +37,8 @@ pub struct Foothold {
     pub friction: FrictionCone,
     /// The greatest angle between that normal and one of the facets it stands for.
     pub spread: Angle,
+    /// The normal of that facet, of length 1: the worst that the foot may meet.
+    pub worst_normal: Vector3<f64>,
     /// Their area within reach, m^2.
     pub area_m2: f64,
 }
@@ -158,7 +160,9 @@ impl StanceGround {
                 outcome = LimbOutcome::SamePlace;
                 continue;
             }
-            let cosine = group.parts.iter().map(|part| part.normal.dot(&normal)).fold(1.0, f64::min);
+            let away = |part: &&Part| part.normal.dot(&normal);
+            let worst = group.parts.iter().min_by(|a, b| away(a).total_cmp(&away(b))).map_or(normal, |part| part.normal);
+            let cosine = worst.dot(&normal);
             let of_map = self.map().and_then(|map| map.friction_at(point_m.xy()));
             let Some(ground) = of_map.or_else(|| self.mesh().friction_of(part.facet)) else { continue };
             if ground.coefficient() == 0.0 {
@@ -173,6 +177,7 @@ impl StanceGround {
                 facet: part.facet,
                 friction,
                 spread: Angle::from_radians(libm::acos(cosine.min(1.0))),
+                worst_normal: pose.turn * worst,
                 area_m2: group.area_m2,
             });
         }
