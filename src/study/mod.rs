@@ -2,7 +2,8 @@
 //!
 //! A question along a chain is asked of a [`Case`]: a [`Scenario`](crate::scenario::Scenario) over its terrain. Its answer holds the
 //! record that is written ([`report`](crate::report)), the warnings, and what its pictures and tables need. Nothing here prints or
-//! writes files. What a result says of its question comes from [`Case::record`].
+//! writes files. What a result says of its question comes from [`Case::record`]. Programs that embed this crate begin with [`open`], whose
+//! questions take a scenario as it is written and give the document of the answer.
 //!
 //! ```text
 //! hop          one hop, limit by limit; mesh_hop over a mesh, mesh_route a path over one, mesh_reach what is reached
@@ -62,6 +63,7 @@ mod mesh_trials;
 mod nodes;
 mod objective;
 mod on_body;
+pub mod open;
 mod physics;
 mod pipeline;
 mod plan;

@@ -35,7 +35,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
     output::warn_all(args.common.quiet, &routed.warnings);
     let views = Views {
         text: &|| legs_plan_text(&routed.answer),
-        json: &|| input.document_on_map(DocumentKind::PlanLegs, routed.crs.as_ref(), &routed.warnings, &routed.answer),
+        json: &|| Ok(input.document_on_map(DocumentKind::PlanLegs, routed.crs.as_ref(), &routed.warnings, &routed.answer)?),
         csv: &|out| write_path_csv(&routed.answer.plan.path, MapKnowledge::Metres, out),
     };
     let mut files = Files::default();
