@@ -57,7 +57,8 @@ impl Chain {
 
     /// Some pairs, in their order.
     fn pairs(&self, from_x_m: &[f64], to_x_m: &[f64]) -> Result<Angles, OffChain> {
-        let mut angles = (Vec::with_capacity(from_x_m.len()), Vec::with_capacity(from_x_m.len()), Vec::with_capacity(from_x_m.len()));
+        let mut angles =
+            (Vec::with_capacity(from_x_m.len()), Vec::with_capacity(from_x_m.len()), Vec::with_capacity(from_x_m.len()));
         for (from, to) in from_x_m.iter().zip(to_x_m) {
             let (min, max, limit) = self.pair(*from, *to)?;
             angles.0.push(min);

@@ -110,11 +110,8 @@ impl Rasters {
 pub(crate) struct Draft(open::Draft);
 
 /// The words of documents: those of the command, so that their bytes are the same.
-const WORDING: Wording = Wording {
-    question: "command",
-    of_map: "--goal, --effort, --amount-output or --simulate",
-    file_name: open::relative_name,
-};
+const WORDING: Wording =
+    Wording { question: "command", of_map: "--goal, --effort, --amount-output or --simulate", file_name: open::relative_name };
 
 fn points(at_m: Vec<(f64, f64)>) -> Vec<MapPoint> {
     at_m.into_iter().map(|(x, y)| MapPoint::new(x, y)).collect()

@@ -51,9 +51,9 @@ impl Class {
             AskError::Simulate(SimulateError::Dem { .. })
             | AskError::MeshHop(MeshHopError::Terrain(_))
             | AskError::MeshRoute(MeshRouteError::Mesh(MeshHopError::Terrain(_)))
-            | AskError::Legs(
-                LegsRouteError::Terrain(_) | LegsRouteError::Mesh(MeshRouteError::Mesh(MeshHopError::Terrain(_))),
-            ) => Self::Terrain,
+            | AskError::Legs(LegsRouteError::Terrain(_) | LegsRouteError::Mesh(MeshRouteError::Mesh(MeshHopError::Terrain(_)))) => {
+                Self::Terrain
+            }
             AskError::Legs(LegsRouteError::Pipeline(error)) => Self::of_pipeline(error),
             AskError::Plan(PlanError::Defect(_))
             | AskError::MeshRoute(MeshRouteError::Defect(_) | MeshRouteError::Lost)
@@ -96,15 +96,12 @@ impl Class {
 
 /// An exception of a class.
 fn made<'py>(py: Python<'py>, class: &str, message: String, attributes: &Bound<'py, PyDict>) -> PyErr {
-    let instance = py
-        .import("chta._errors")
-        .and_then(|module| module.getattr(class)?.call1((message,)))
-        .and_then(|instance| {
-            for (name, value) in attributes {
-                instance.setattr(name.extract::<String>()?.as_str(), value)?;
-            }
-            Ok(instance)
-        });
+    let instance = py.import("chta._errors").and_then(|module| module.getattr(class)?.call1((message,))).and_then(|instance| {
+        for (name, value) in attributes {
+            instance.setattr(name.extract::<String>()?.as_str(), value)?;
+        }
+        Ok(instance)
+    });
     instance.map_or_else(|error| error, PyErr::from_value)
 }
 

@@ -1,9 +1,6 @@
 //! A machine, its surface and its body without a terrain: the tables of a scenario, validated as those are.
 
-use chta::{
-    scenario::Scenario,
-    study::open::Draft,
-};
+use chta::{scenario::Scenario, study::open::Draft};
 use pyo3::prelude::*;
 
 use crate::errors;

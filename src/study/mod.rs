@@ -15,6 +15,7 @@
 //! compare      several scenarios side by side
 //! targets_plan a mission over several targets; targets_simulate its trials
 //! sites        landing sites ranked
+//! CaseTable    many cases of one scenario, one row a case
 //! arena        a path of a wheeled jumper among boxes
 //! ```
 
@@ -22,6 +23,7 @@ mod alike;
 mod arena;
 #[cfg(feature = "plot")]
 mod arena_picture;
+mod batch;
 #[cfg(feature = "plot")]
 mod captions;
 mod case;
@@ -94,6 +96,7 @@ mod variation;
 
 pub use alike::ask_the_same;
 pub use arena::{ArenaError, ArenaPlanned, ArenaPlanner, compare_planners, plan_in_arena};
+pub use batch::{ANSWERS, BatchRow, CaseTable, CaseTableError};
 #[cfg(feature = "plot")]
 pub use captions::{conditions, wheels};
 pub use case::{Case, CaseError, Commands};

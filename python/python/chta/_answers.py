@@ -277,7 +277,8 @@ class Sites(Answer):
         """The same as a table (extra ``pandas``)."""
         import pandas as pd
 
-        return pd.DataFrame(self.rows)
+        table: pandas.DataFrame = pd.DataFrame(self.rows)
+        return table
 
     def plot(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.axes.Axes:
         """Draws the candidates on the map, by the share of the nodes that each reaches (extra ``plot``)."""

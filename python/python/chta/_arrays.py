@@ -36,7 +36,7 @@ class TakeoffSet(NamedTuple):
     @property
     def feasible(self) -> NDArray[np.bool_]:
         """Where a hop is feasible."""
-        return self.limit == -1
+        return np.asarray(self.limit == -1)
 
 
 def _vector(values: ArrayLike | None, kind: Any = np.float64) -> NDArray[Any] | None:
@@ -122,14 +122,14 @@ class Dem:
         Masked posts, NaN and ``nodata`` have no elevation. 32-bit arrays are kept as such. The map is a local one: no reference system is
         known, and distances are taken as true.
         """
-        masked = np.ma.asarray(z_m)
-        if masked.ndim != 2:
-            raise InputError(f"z_m has {masked.ndim} dimensions, expected two: rows and columns")
-        single = masked.dtype == np.float32
-        kind = np.float32 if single else np.float64
-        array = np.array(masked.filled(np.nan) if masked.dtype.kind == "f" else masked.astype(kind).filled(np.nan), kind)
+        given = np.asanyarray(z_m)
+        if given.ndim != 2:
+            raise InputError(f"z_m has {given.ndim} dimensions, expected two: rows and columns")
+        single = given.dtype == np.float32
+        array: NDArray[Any] = np.array(given, np.float32 if single else np.float64, subok=False)
         if nodata is not None:
-            array[array == kind(nodata)] = np.nan
+            array[array == array.dtype.type(nodata)] = np.nan
+        array[np.ma.getmaskarray(given)] = np.nan
         rows, cols = array.shape
         numbers = [float(value) for value in list(transform)[:6]]
         if len(numbers) != 6:
@@ -190,9 +190,7 @@ class Dem:
         """
         if direction not in ("out", "back"):
             raise InputError(f"direction is {direction!r}, expected out or back")
-        starts = list(starts_m)  # type: ignore[arg-type]
-        if len(starts) == 2 and not isinstance(starts[0], (tuple, list, np.ndarray)):
-            starts = [(starts[0], starts[1])]
+        starts = np.asarray(starts_m if isinstance(starts_m, np.ndarray) else list(starts_m), np.float64).reshape(-1, 2)
         search = {} if effort is None else {"effort": effort}
         hops, least, shape, transform, warnings = self._inner.hop_map(
             [(float(x), float(y)) for x, y in starts],

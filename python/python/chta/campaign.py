@@ -51,7 +51,8 @@ class Campaign:
         import pandas as pd
 
         answers = [{name: value for name, value in row.items() if name != "document"} for row in self.rows]
-        return pd.DataFrame([{**case, **answer} for case, answer in zip(self.cases, answers)])
+        table: pandas.DataFrame = pd.DataFrame([{**case, **answer} for case, answer in zip(self.cases, answers)])
+        return table
 
 
 def key_of(scenario: Scenario, question: str) -> str:

@@ -422,6 +422,16 @@ pub(crate) fn files_with_robot_of(bare: &Bare) -> Result<Vec<InputFile>, Failure
     read_files(&bare.files_with_robot())
 }
 
+/// The keys of a scenario with those that are set, before they are validated.
+pub(crate) fn load_draft(path: &Path, set: &[String]) -> Result<Draft, Failure> {
+    let mut source = option_source(Some(path))?;
+    for assignment in set {
+        source.entries.set(&format!("--set {assignment}"), assignment);
+    }
+    look_at_keys(&mut source, true)?;
+    Ok(source)
+}
+
 /// The keys of the scenario of an option; none without it.
 fn option_source(scenario: Option<&Path>) -> Result<Draft, Failure> {
     match scenario {
