@@ -54,7 +54,7 @@ impl AnyComparison {
                 comparison.compared.iter().flat_map(Compared::<Planned>::warnings).collect(),
             ),
             Self::Mesh(inputs, comparison) => (
-                inputs.iter().map(MeshPlanInput::record).collect(),
+                inputs.iter().map(|input| &input.record).collect(),
                 comparison.compared.iter().flat_map(Compared::<MeshRouted>::warnings).collect(),
             ),
             Self::Travel(loaded, comparison) => (

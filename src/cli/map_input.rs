@@ -8,6 +8,7 @@ use chta::{
     study::{
         LegsMapQuestion,
         map::{MapQuestion, MapStudyError, NamedPlace},
+        open::ScenarioEnds,
     },
     terrain::{LonLat, MapPlace},
 };
@@ -18,7 +19,7 @@ use super::{
     claims,
     effects::Purpose,
     inputs,
-    load::{Bare, ScenarioEnds, load_map},
+    load::{Bare, load_map},
     output,
     wrong_thing::Role,
 };

@@ -1,6 +1,7 @@
 //! The command line: arguments, one file per command, messages on the terminal.
 
 mod args;
+mod batch_folder;
 mod claims;
 mod commands;
 mod compared;
@@ -91,6 +92,7 @@ fn answer_of(command: Command) -> Result<Answer, Failure> {
         Command::Require(args) => commands::require::run(&args),
         Command::Trade(args) => commands::trade::run(&args),
         Command::Compare(args) => commands::compare::run(&args),
+        Command::Batch(args) => commands::batch::run(&args),
         Command::Stance(args) => commands::stance::run(&args),
         Command::Arena(args) => commands::arena::run(&args),
         Command::Synth(args) => commands::synth::run(&args),

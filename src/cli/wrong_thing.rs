@@ -46,6 +46,8 @@ pub(crate) enum Role {
     Errors,
     /// ARENA of `arena`.
     Arena,
+    /// CASES of `batch`.
+    Cases,
 }
 
 impl Role {
@@ -83,6 +85,7 @@ impl Role {
             Self::Friction => "surface.friction_raster",
             Self::Errors => "uncertainty.errors",
             Self::Arena => "ARENA",
+            Self::Cases => "CASES",
         }
     }
 
@@ -111,6 +114,7 @@ impl Role {
                 "a CSV of measured errors with columns such as takeoff_speed_error_fraction and takeoff_angle_error_deg"
             }
             Self::Arena => "an arena (TOML) with the tables arena, jumper and box",
+            Self::Cases => "a CSV file of cases whose header names scenario keys",
         }
     }
 
@@ -160,6 +164,8 @@ impl Role {
                 Self::Errors => *kind == Kind::MeasuredCsv,
                 // By its extension it is taken for a scenario; its reader knows the tables.
                 Self::Arena => *kind == Kind::Scenario,
+                // Its reader knows the keys.
+                Self::Cases => false,
                 // The zones' reader knows the terrain's map, to which they have to be converted.
                 Self::KeepOut | Self::KeepIn => of_raster || matches!(kind, Kind::GeoJson | Kind::Json | Kind::Shapes(_)),
             }

@@ -2,7 +2,8 @@
 //!
 //! A question along a chain is asked of a [`Case`]: a [`Scenario`](crate::scenario::Scenario) over its terrain. Its answer holds the
 //! record that is written ([`report`](crate::report)), the warnings, and what its pictures and tables need. Nothing here prints or
-//! writes files. What a result says of its question comes from [`Case::record`].
+//! writes files. What a result says of its question comes from [`Case::record`]. Programs that embed this crate begin with [`open`], whose
+//! questions take a scenario as it is written and give the document of the answer.
 //!
 //! ```text
 //! hop          one hop, limit by limit; mesh_hop over a mesh, mesh_route a path over one, mesh_reach what is reached
@@ -14,6 +15,7 @@
 //! compare      several scenarios side by side
 //! targets_plan a mission over several targets; targets_simulate its trials
 //! sites        landing sites ranked
+//! CaseTable    many cases of one scenario, one row a case
 //! arena        a path of a wheeled jumper among boxes
 //! ```
 
@@ -21,6 +23,7 @@ mod alike;
 mod arena;
 #[cfg(feature = "plot")]
 mod arena_picture;
+mod batch;
 #[cfg(feature = "plot")]
 mod captions;
 mod case;
@@ -62,6 +65,7 @@ mod mesh_trials;
 mod nodes;
 mod objective;
 mod on_body;
+pub mod open;
 mod physics;
 mod pipeline;
 mod plan;
@@ -94,6 +98,7 @@ mod variation;
 
 pub use alike::ask_the_same;
 pub use arena::{ArenaError, ArenaPlanned, ArenaPlanner, compare_planners, plan_in_arena};
+pub use batch::{ANSWERS, BatchRow, CaseTable, CaseTableError};
 #[cfg(feature = "plot")]
 pub use captions::{conditions, wheels};
 pub use case::{Case, CaseError, Commands};

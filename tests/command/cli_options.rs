@@ -10,7 +10,7 @@ use std::{
 
 use crate::desk::{ACROSS, CHAIN, Desk, FORWARD_ONLY, FOUR_LEGS, Ran};
 
-const COMMANDS: [&str; 18] = [
+const COMMANDS: [&str; 19] = [
     "run",
     "slice",
     "map",
@@ -22,6 +22,7 @@ const COMMANDS: [&str; 18] = [
     "trade",
     "compare",
     "simulate",
+    "batch",
     "stance",
     "arena",
     "synth",
@@ -1359,6 +1360,13 @@ fn desk() -> Desk {
     let space = desk.read("map.toml").replace("dem = \"ground.tif\"\nstart_m = [1, 2]\ngoal_m = [15, 12]", over_mesh);
     desk.write("space.toml", space.replace("node_spacing_max_m = 1.0", "contacts_max = 30"));
     desk.write("forward.csv", FORWARD_ONLY);
+    desk.write("cases.csv", "hopper.takeoff_speed_max_m_s\n6\n9\n");
+    std::fs::create_dir(desk.path().join("begun")).unwrap();
+    desk.write(
+        "begun/part-00000000-.csv",
+        "case,key,hopper.takeoff_speed_max_m_s,verdict,hops,hops_lower_bound,flight_time_s,mission_time_s,energy_j_kg,delta_v_m_s,\
+         peak_takeoff_speed_m_s,ground_distance_m,error\n0,,6,,,,,,,,,,refused\n",
+    );
     desk.write("errors.toml", desk.read("scenario.toml") + ERRORS);
     // A path that the scenario in it would not be planned with.
     let planned = desk.json(&["plan", "errors.toml", "--set", "search.points_per_segment=3", "--set", "search.risk=ignored"]);
@@ -1375,6 +1383,35 @@ fn desk() -> Desk {
     );
     desk
 }
+
+/// The options of a batch. What an earlier batch left is refused without its option.
+const BATCH: [Trial; 5] = [
+    (
+        "--scenario",
+        &["batch", "cases.csv", "--scenario", "scenario.toml", "-o", "parts"],
+        &["batch", "cases.csv", "--scenario", "errors.toml", "-o", "parts"],
+    ),
+    (
+        "--output",
+        &["batch", "cases.csv", "--scenario", "scenario.toml", "-o", "parts"],
+        &["batch", "cases.csv", "--scenario", "scenario.toml", "-o", "others"],
+    ),
+    (
+        "--resume",
+        &["batch", "cases.csv", "--scenario", "scenario.toml", "-o", "begun"],
+        &["batch", "cases.csv", "--scenario", "scenario.toml", "-o", "begun", "--resume"],
+    ),
+    (
+        "--collect",
+        &["batch", "cases.csv", "--scenario", "scenario.toml", "-o", "parts"],
+        &["batch", "cases.csv", "--scenario", "scenario.toml", "-o", "parts", "--collect", "all.csv"],
+    ),
+    (
+        "--set",
+        &["batch", "cases.csv", "--scenario", "scenario.toml", "-o", "parts"],
+        &["batch", "cases.csv", "--scenario", "scenario.toml", "-o", "parts", "--set", "body.name=moon"],
+    ),
+];
 
 /// The visible results of a run: status, both streams, every file.
 fn seen(args: &[&str]) -> (Ran, BTreeMap<String, (u64, Vec<u8>)>) {
@@ -1406,6 +1443,7 @@ fn every_option_changes_the_output() {
         ("trade", &TRADE),
         ("compare", &COMPARE),
         ("simulate", &SIMULATE),
+        ("batch", &BATCH),
         ("stance", &STANCE),
         ("arena", &ARENA),
         ("completions", &[]),

@@ -9,7 +9,7 @@ use crate::desk::{ACROSS, Desk, FOUR_LEGS};
 /// A command that ends with 0, and one that ends with 1.
 type Case = (&'static str, &'static [&'static str], Option<&'static [&'static str]>);
 
-const CASES: [Case; 19] = [
+const CASES: [Case; 20] = [
     ("run", &["run", "scenario.toml", "-o", "out"], Some(&["run", "slippery.toml", "-o", "out"])),
     ("slice", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], None),
     ("fan", &["fan", "ground.tif", "--from", "9,9", "--headings", "4", "--length", "5", "--scenario", "map.toml"], None),
@@ -42,6 +42,7 @@ const CASES: [Case; 19] = [
         Some(&["compare", "scenario.toml", "slippery.toml", "--require-all"]),
     ),
     ("simulate", &["simulate", "trials.toml"], Some(&["simulate", "slippery.toml"])),
+    ("batch", &["batch", "cases.csv", "--scenario", "scenario.toml", "-o", "parts"], None),
     (
         "stance",
         &["stance", "ground.tif", "--robot", "four_legs.toml", "--at", "9,9", "--scenario", "map.toml"],
@@ -71,6 +72,7 @@ fn every_command_ends_with_the_status_of_the_documents() {
         desk.write("weak_map.toml", desk.read("map.toml").replace("= 6.0", "= 0.3"));
         desk.write("arena.toml", ACROSS);
         desk.write_legs("four_legs.toml", FOUR_LEGS);
+        desk.write("cases.csv", "hopper.takeoff_speed_max_m_s\n6\n-1\n");
         desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
         for (status, words) in [(0, Some(yes)), (1, no)] {
             let Some(words) = words else { continue };

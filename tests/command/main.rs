@@ -8,6 +8,7 @@ mod installed;
 mod tower;
 
 mod arena;
+mod batch;
 mod bends;
 mod bounces;
 mod cli_answers;
@@ -37,6 +38,7 @@ mod mesh_map;
 mod mesh_plan;
 mod missing_data;
 mod objective;
+mod opened;
 mod outages;
 mod picture_files;
 #[cfg(unix)]

@@ -1,6 +1,7 @@
 //! The command line as typed: the commands, the options that several of them share, and the parsers of positions and counts.
 
 mod arena;
+mod batch;
 mod journeys;
 mod maps;
 mod position;
@@ -21,6 +22,7 @@ use super::{
 };
 
 pub(crate) use arena::ArenaArgs;
+pub(crate) use batch::BatchArgs;
 pub(crate) use journeys::{
     CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
 };
@@ -61,6 +63,7 @@ pub(crate) enum Command {
     Require(RequireArgs),
     Trade(TradeArgs),
     Compare(CompareArgs),
+    Batch(BatchArgs),
     Stance(Box<StanceArgs>),
     Arena(Box<ArenaArgs>),
     Synth(Box<SynthArgs>),

@@ -39,7 +39,7 @@ pub(super) fn run(args: &CheckArgs, input: &MeshPlanInput) -> Result<Answer, Fai
     let document = serde_json::from_slice(&text).map_err(|error| about(&error))?;
     let checked = check_over_mesh((&input.scenario, &input.base), &document, input.inputs()).map_err(|error| about(&error))?;
     output::warn_all(args.common.quiet, &checked.warnings);
-    let json = || input.document(DocumentKind::CheckMesh, &checked.warnings, &checked.answer);
+    let json = || Ok(input.document(DocumentKind::CheckMesh, &checked.warnings, &checked.answer)?);
     show(args.answer.format, || mesh_check_text(&checked.answer), json)?;
     Ok(Answer::of(checked.answer.holds))
 }

@@ -8,7 +8,7 @@ use chta::{
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs},
-    load::{raster_files_of, robot_files_of},
+    load::files_with_robot_of,
     map_input::MapInput,
     map_outputs::LegsMapOutputs,
     not_on_mesh, output,
@@ -30,7 +30,7 @@ fn run(args: &MapArgs, input: &MapInput) -> Result<Answer, Failure> {
     let question = input.legs_question(args);
     let about = |error| Failure::about(&input.bare.dem, &error);
     let prepared = PreparedLegsMap::new(&question).map_err(about)?;
-    let files = [raster_files_of(&input.bare)?, robot_files_of(&input.bare)?].concat();
+    let files = files_with_robot_of(&input.bare)?;
     let document = input.bare.document.clone();
     if args.size.dry_run {
         let warnings = input.warned(&prepared.warnings, quiet);

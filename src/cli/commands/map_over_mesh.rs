@@ -26,7 +26,7 @@ pub(super) fn run(args: &MapArgs, input: &MeshPlanInput) -> Result<Answer, Failu
     output::warn_all(args.common.quiet, &reached.warnings);
     let views = Views {
         text: &|| mesh_map_text(&reached.answer),
-        json: &|| input.document(DocumentKind::MapMesh, &reached.warnings, &reached.answer),
+        json: &|| Ok(input.document(DocumentKind::MapMesh, &reached.warnings, &reached.answer)?),
         csv: &|out| reached.write_csv(out),
     };
     let mut files = Files::default();

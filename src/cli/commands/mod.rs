@@ -1,6 +1,7 @@
 //! One file per command, and one for a question over a mesh.
 
 pub(super) mod arena;
+pub(super) mod batch;
 pub(super) mod bodies;
 pub(super) mod check;
 mod check_over_mesh;

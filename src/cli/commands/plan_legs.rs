@@ -42,7 +42,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
     let first = args.first_posture(routed.answer.plan.path.len())?;
     let views = Views {
         text: &|| legs_plan_text(&routed.answer),
-        json: &|| input.document_on_map(DocumentKind::PlanLegs, routed.crs().as_ref(), &routed.warnings, &routed.answer),
+        json: &|| Ok(input.document_on_map(DocumentKind::PlanLegs, routed.crs().as_ref(), &routed.warnings, &routed.answer)?),
         csv: &|out| write_path_csv(&routed.answer.plan.path, MapKnowledge::Metres, out),
     };
     let mut files = Files::default();

@@ -42,7 +42,7 @@ pub(super) fn run(args: &PlanArgs, input: &MeshPlanInput) -> Result<Answer, Fail
     output::warn_all(args.common.quiet, &routed.warnings);
     let views = Views {
         text: &|| mesh_plan_text(&routed.answer),
-        json: &|| input.document(DocumentKind::PlanMesh, &routed.warnings, &routed.answer),
+        json: &|| Ok(input.document(DocumentKind::PlanMesh, &routed.warnings, &routed.answer)?),
         csv: &|out| write_path_csv(&routed.answer.path, MapKnowledge::Metres, out),
     };
     let mut files = Files::default();

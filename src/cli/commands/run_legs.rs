@@ -31,7 +31,7 @@ pub(super) fn run(args: &RunArgs, input: &MeshPlanInput) -> Result<Answer, Failu
     drop(progress);
     output::warn_all(args.quiet, &warnings);
     let written = folder.write()?;
-    let document = || input.document_on_map(DocumentKind::PlanLegs, crs.as_ref(), &warnings, &answer);
+    let document = || Ok(input.document_on_map(DocumentKind::PlanLegs, crs.as_ref(), &warnings, &answer)?);
     show(args.answer.format, || format!("{text}\n{written}\n"), document)?;
     Ok(Answer::of(answer.plan.is_traversable()))
 }

@@ -36,6 +36,6 @@ pub(super) fn run(args: &RunArgs, input: &MeshPlanInput) -> Result<Answer, Failu
     output::warn_all(args.quiet, &warnings);
     let written = folder.write()?;
     let text = || format!("{}{trials_text}\n{written}\n", mesh_plan_text(&answer));
-    show(args.answer.format, text, || input.document(DocumentKind::RunMesh, &warnings, &answer))?;
+    show(args.answer.format, text, || Ok(input.document(DocumentKind::RunMesh, &warnings, &answer)?))?;
     Ok(Answer::of(answer.is_traversable()))
 }

@@ -28,7 +28,7 @@ pub(super) fn run(args: &TradeArgs, input: &MeshPlanInput) -> Result<Answer, Fai
     output::warn_all(args.common.quiet, &traded.warnings);
     let views = Views {
         text: &|| traded.answer.text(),
-        json: &|| input.document(DocumentKind::TradeLegs, &traded.warnings, &traded.answer),
+        json: &|| Ok(input.document(DocumentKind::TradeLegs, &traded.warnings, &traded.answer)?),
         csv: &|out| traded.answer.write_csv(out),
     };
     let mut files = Files::default();

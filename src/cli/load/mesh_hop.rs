@@ -11,10 +11,16 @@ use nalgebra::Point3;
 use serde::Serialize;
 
 use super::{
-    EndOptions, apply_options, forget_terrain, lacking_on, look_at_keys, option_source, read_source, relative_name, two_scenarios,
-    validated,
+    EndOptions, apply_options, lacking_on, look_at_keys, option_source, read_source, relative_name, two_scenarios, validated,
 };
-use crate::cli::{Failure, args::CommonArgs, claims, effects::Purpose, inputs, output, verbose, wrong_thing::Role};
+use crate::cli::{
+    Failure,
+    args::CommonArgs,
+    claims,
+    effects::{Purpose, WORDING},
+    inputs, output, verbose,
+    wrong_thing::Role,
+};
 
 /// The mesh of one hop, with the scenario and the ends.
 #[derive(Debug)]
@@ -52,24 +58,24 @@ pub(crate) fn load_mesh_hop(terrain: &Path, common: &CommonArgs, ends: EndOption
         input.file.clone()
     } else {
         look_at_keys(&mut source, false)?;
-        let named = source.entries.files().into_iter().find(|(key, _)| key.path() == "terrain.mesh").map(|(_, file)| file);
         // Of another terrain the sentence about the count of numbers says what it takes.
-        let Some(named) = named else { return Ok(None) };
-        source.base.join(named)
+        let Some(named) = source.file_of("terrain.mesh") else { return Ok(None) };
+        named
     };
     let ends_m = ends.in_space(&mesh)?.map(Point3::from);
     apply_options(&mut source.entries, common, None, EndOptions::NONE);
     let given = source.entries.clone();
     let scale = source.entries.mesh_scale();
-    forget_terrain(&mut source.entries);
+    source.forget_terrain();
     look_at_keys(&mut source, false)?;
-    let scenario = validated(source.entries, &source.name, &source.text)?;
+    let scenario = validated(&source)?;
     let lacking = scenario.lacks_on_a_dem();
     if !lacking.is_empty() {
         let name = common.scenario.as_ref().map(|file| format!("{}: ", file.display())).unwrap_or_default();
         return Err(Failure::message(name + &lacking_on(&lacking, "a mesh")));
     }
-    let warnings: Vec<String> = Purpose::Hop.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
+    let warnings: Vec<String> =
+        Purpose::Hop.unused(&given, &scenario, &WORDING).into_iter().chain(Purpose::replaced(&given)).collect();
     output::warn_all(common.quiet, &warnings);
     claims::reads(&mesh);
     // As of maps, without terrain: the inputs name the mesh.

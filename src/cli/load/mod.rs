@@ -11,22 +11,22 @@ mod result;
 mod stance;
 mod vary;
 
-use std::{
-    fs,
-    io::Read,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use chta::{
     chain::{Station, csv::read_chain_csv_file},
     report::{CompareAnswer, Document, DocumentKind, InputFile},
-    scenario::{Entries, FileKind, LackingKey, Place, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource},
-    study::{self, Case, CaseError, CaseRecord, Commands, Overlays, PipelineError, checksums, scenario_files},
+    scenario::{Entries, FileKind, LackingKey, Scenario, ScenarioProblems, TerrainSource},
+    study::{
+        Case, CaseError, CaseRecord, PipelineError, checksums,
+        open::{Draft, OpenCase, OpenError, SLICED_TERRAIN},
+        scenario_files,
+    },
 };
 use serde::Serialize;
 
 pub(crate) use arena::load_arena;
-pub(crate) use bare::{Bare, ScenarioEnds, load_bare, load_map};
+pub(crate) use bare::{Bare, load_bare, load_map};
 pub(crate) use ends::EndOptions;
 pub(crate) use mesh_hop::{MeshHopInput, load_mesh_hop};
 pub(crate) use mesh_plan::{MeshPlanInput, is_over_mesh, load_mesh_plan, load_mesh_scenario};
@@ -40,7 +40,7 @@ use super::{
     Failure,
     args::{CommonArgs, JourneyArgs, SearchArgs},
     claims,
-    effects::Purpose,
+    effects::{Purpose, WORDING},
     hints,
     inputs::{self, Input, KeyProblem},
     output, verbose,
@@ -86,15 +86,6 @@ impl Loaded {
             ))),
         }
     }
-}
-
-/// Keys of a scenario with the file they came from.
-struct Source {
-    entries: Entries,
-    name: String,
-    text: String,
-    /// The folder that its paths start from.
-    base: PathBuf,
 }
 
 /// What a file to analyse is.
@@ -151,7 +142,7 @@ pub(crate) fn load_scenario(target: &Path, common: &CommonArgs, purpose: Purpose
     let target = Target { input: inputs::open(target, Role::Scenario)?, kind: TargetKind::Scenario };
     let source = typed(&target, common, None, EndOptions::NONE)?;
     let given = source.entries.clone();
-    validate_and_prepare(&target, source, common.quiet, (EndOptions::NONE, purpose, &given), &mut purpose.preparation())
+    validate_and_prepare(&target, source, common.quiet, (EndOptions::NONE, purpose, &given), &mut of(purpose))
 }
 
 /// Loads the chain, scenario or result of a journey with the options beside it, and with keys that a command's own options set.
@@ -197,11 +188,11 @@ fn loaded_from(
         source.entries.set_by_option(option, table, key, value.clone());
     }
     let given = source.entries.clone();
-    validate_and_prepare(target, source, common.quiet, (ends, purpose, &given), &mut purpose.preparation())
+    validate_and_prepare(target, source, common.quiet, (ends, purpose, &given), &mut of(purpose))
 }
 
 /// The keys of a chain, scenario or result with the options beside it.
-fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) -> Result<Source, Failure> {
+fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) -> Result<Draft, Failure> {
     let Target { input, kind } = target;
     let mut source = match (target.is_scenario(), &common.scenario) {
         (true, None) => read_source(input)?,
@@ -212,7 +203,7 @@ fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends
     let on_chain = *kind == TargetKind::Chain || (*kind == TargetKind::Scenario && has_chain);
     ends.check_counts(&input.given, *kind == TargetKind::Raster, on_chain)?;
     if *kind == TargetKind::Raster {
-        forget_terrain(&mut source.entries);
+        source.forget_terrain();
         // The files of a scenario beside the raster lie where that scenario does.
         for (key, path) in source.entries.files().into_iter().filter(|(_, path)| path != "-") {
             source.entries.redirect(key, &source.base.join(path).to_string_lossy());
@@ -260,7 +251,7 @@ fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends
 }
 
 /// Looks at the files that a scenario's keys name, before anything else is checked, and puts what stands in for a pipe in its place.
-fn look_at_keys(source: &mut Source, chain_is_a_key: bool) -> Result<(), Failure> {
+fn look_at_keys(source: &mut Draft, chain_is_a_key: bool) -> Result<(), Failure> {
     let files = source.entries.files();
     let terrains = files.iter().filter(|(key, _)| key.table == "terrain").count();
     let has_chain = files.iter().any(|(key, _)| key.path() == "terrain.chain");
@@ -289,46 +280,41 @@ fn look_at_keys(source: &mut Source, chain_is_a_key: bool) -> Result<(), Failure
     if !is_wrong && let Err(others) = Scenario::new(source.entries.clone()) {
         problems.extend(others);
     }
-    Err(refused(problems, &source.name, &source.text))
+    Err(refused(source.refused(problems)))
+}
+
+/// How the cases of a question are prepared.
+fn of(purpose: Purpose) -> impl FnMut(Scenario, &Path) -> Result<Case, CaseError> {
+    move |scenario, base| Case::new(scenario, base, purpose.commands())
 }
 
 /// Prepares the case of a scenario, whose paths start from the given folder.
 type Prepare<'a> = &'a mut dyn FnMut(Scenario, &Path) -> Result<Case, CaseError>;
 
-impl Purpose {
-    /// How its cases are prepared.
-    fn preparation(self) -> impl FnMut(Scenario, &Path) -> Result<Case, CaseError> {
-        let commands = if self.flies_commands() { Commands::OfTheMachine } else { Commands::Exact };
-        move |scenario, base| Case::new(scenario, base, commands)
-    }
-}
-
-/// What a result says of a case.
-fn recorded(case: &Case) -> Result<CaseRecord, Failure> {
+/// A case and what a result says of it, once the files that it read are noted.
+fn stated(OpenCase { case, record }: OpenCase, ends: EndOptions) -> Loaded {
     for file in scenario_files(&case.scenario, &case.base) {
         claims::reads(&file);
         verbose::read(&file);
     }
-    let record = case.record(&relative_name)?;
     let geometry = case.prepared.chain.geometry();
     let (from_m, to_m) = geometry.extent_m();
     verbose::say(|| format!("the chain has {} segments, x from {from_m} to {to_m} m", geometry.segment_count()));
     verbose::settings(&record.scenario, &case.scenario.search);
-    Ok(record)
+    Loaded { case, record, ends }
 }
 
 /// Validates keys and prepares their case. `given`: the keys of file and options, without those that a command varies.
 fn validate_and_prepare(
     target: &Target,
-    source: Source,
+    source: Draft,
     quiet: bool,
     (ends, purpose, given): (EndOptions, Purpose, &Entries),
     prepare: Prepare<'_>,
 ) -> Result<Loaded, Failure> {
-    let base = source.base;
     let Target { input, kind } = target;
-    let replaced = Purpose::replaced(&source.entries);
-    let mut scenario = validated(source.entries, &source.name, &source.text)?;
+    let mut scenario = validated(&source)?;
+    let Draft { base, entries, .. } = source;
     let lacking = scenario.lacks_on_a_dem();
     if *kind == TargetKind::Raster && !lacking.is_empty() {
         return Err(Failure::message(lacking_on(&lacking, "a DEM")));
@@ -349,13 +335,13 @@ fn validate_and_prepare(
         scenario.terrain = Some(terrain.clone());
     }
     let file = base.join(terrain.path());
-    let mut case = prepare(scenario, &base).map_err(|error| match error {
+    let case = prepare(scenario, &base).map_err(|error| match error {
         CaseError::Prepare(error) => unprepared(error, &file, ends),
         other => other.into(),
     })?;
-    case.prepared.warnings.extend(purpose.unused(given, &case.scenario).into_iter().chain(replaced));
-    output::warn_all(quiet, &case.prepared.warnings);
-    Ok(Loaded { record: recorded(&case)?, case, ends })
+    let opened = OpenCase::new(case, purpose, [given, &entries], &WORDING)?;
+    output::warn_all(quiet, &opened.case.prepared.warnings);
+    Ok(stated(opened, ends))
 }
 
 /// Several scenarios side by side as one document, with all of them as used.
@@ -409,103 +395,61 @@ fn lacking_on(keys: &[LackingKey], terrain: &str) -> String {
     )
 }
 
-/// A raster and the files beside it that were read, for a result.
-pub(crate) fn raster_files(path: &Path) -> Result<Vec<InputFile>, Failure> {
-    let files = study::raster_files(path);
-    for file in &files {
+/// Files for a result, noted as read.
+pub(crate) fn read_files(files: &[PathBuf]) -> Result<Vec<InputFile>, Failure> {
+    for file in files {
         claims::reads(file);
         verbose::read(file);
     }
-    Ok(checksums(&files, &relative_name)?)
+    Ok(checksums(files, &relative_name)?)
 }
 
 /// The DEM and the overlays of a scenario over it, for a result.
 pub(crate) fn raster_files_of(bare: &Bare) -> Result<Vec<InputFile>, Failure> {
-    let mut files = raster_files(&bare.dem)?;
-    for overlay in Overlays::files(&bare.scenario) {
-        files.extend(raster_files(&bare.base.join(overlay))?);
-    }
-    Ok(files)
+    read_files(&bare.files())
 }
 
 /// Reads a scenario with the folder of its paths but without its terrain, for commands that have their own.
 pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure> {
     let mut source = option_source(Some(path))?;
-    forget_terrain(&mut source.entries);
+    source.forget_terrain();
     look_at_keys(&mut source, false)?;
-    Ok((validated(source.entries, &source.name, &source.text)?, source.base))
+    Ok((validated(&source)?, source.base))
 }
 
-/// The robot file of a scenario over a DEM, for a result.
-pub(crate) fn robot_files_of(bare: &Bare) -> Result<Vec<InputFile>, Failure> {
-    let file = bare.scenario.legs.file.iter().map(|file| bare.base.join(file)).collect::<Vec<_>>();
-    for file in &file {
-        claims::reads(file);
-        verbose::read(file);
+/// The same and its robot file.
+pub(crate) fn files_with_robot_of(bare: &Bare) -> Result<Vec<InputFile>, Failure> {
+    read_files(&bare.files_with_robot())
+}
+
+/// The keys of a scenario with those that are set, before they are validated.
+pub(crate) fn load_draft(path: &Path, set: &[String]) -> Result<Draft, Failure> {
+    let mut source = option_source(Some(path))?;
+    for assignment in set {
+        source.entries.set(&format!("--set {assignment}"), assignment);
     }
-    Ok(checksums(&file, &relative_name)?)
-}
-
-/// The keys of a terrain that is sliced.
-const SLICED_TERRAIN: [&str; 10] =
-    ["route", "dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m", "via_lonlat_deg"];
-
-/// The keys of a terrain that is given as a chain.
-const CHAIN_TERRAIN: [&str; 3] = ["chain", "start_x_m", "goal_x_m"];
-
-/// Whether a key of `[terrain]` gives way to the DEM of a command line.
-pub(crate) fn gives_way_to_a_dem(name: &str) -> bool {
-    SLICED_TERRAIN.contains(&name) || CHAIN_TERRAIN.contains(&name)
-}
-
-/// Removes the scenario's terrain, where the command line gives another.
-fn forget_terrain(entries: &mut Entries) {
-    for key in SLICED_TERRAIN.into_iter().chain(CHAIN_TERRAIN) {
-        entries.forget("terrain", key);
-    }
+    look_at_keys(&mut source, true)?;
+    Ok(source)
 }
 
 /// The keys of the scenario of an option; none without it.
-fn option_source(scenario: Option<&Path>) -> Result<Source, Failure> {
+fn option_source(scenario: Option<&Path>) -> Result<Draft, Failure> {
     match scenario {
         Some(path) => read_source(&inputs::open(path, Role::ScenarioOption)?),
-        None => Ok(Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() }),
+        None => Ok(Draft { wording: WORDING, ..Draft::default() }),
     }
 }
 
 /// Reads the keys of a scenario (TOML) or of a result (JSON).
-fn read_source(input: &Input) -> Result<Source, Failure> {
-    const LARGEST: u64 = 1 << 24;
+fn read_source(input: &Input) -> Result<Draft, Failure> {
     let path = input.file.as_path();
     claims::reads(path);
     let name = input.given.display().to_string();
-    let unread =
-        |reason: String, help: &str| Failure::message(format!("{name}: cannot be read ({reason}), expected a scenario: {help}"));
-    let size = fs::metadata(path).map_err(|e| unread(e.to_string(), "check the path and its permissions"))?.len();
-    if size > LARGEST {
-        return Err(unread(format!("{size} bytes"), "a scenario has some kilobytes; give a chain or DEM inside it"));
-    }
-    let mut bytes = Vec::new();
-    // Reading is bounded as well: the size of a pipe or device is not known in advance.
-    let read = fs::File::open(path).and_then(|file| file.take(LARGEST).read_to_end(&mut bytes));
-    read.map_err(|e| unread(e.to_string(), "check the path and its permissions"))?;
-    let text = String::from_utf8(bytes).map_err(|e| unread(e.to_string(), "write it as TOML in UTF-8"))?;
     // A pipe has no folder: its paths start from the working folder.
-    let folder = if input.is_stream() { None } else { path.parent() }.map(Path::to_path_buf).unwrap_or_default();
-    if input.is_result() {
-        let result: serde_json::Value =
-            serde_json::from_str(&text).map_err(|e| unread(e.to_string(), "give a result.json that chta wrote"))?;
-        let scenario = result
-            .get("scenario")
-            .ok_or_else(|| unread("it has no `scenario`".to_owned(), "give a result.json that chta wrote"))?;
-        // The paths in a result are relative to the folder in which chta ran.
-        return Ok(Source { entries: Entries::from_json(scenario), name, text: String::new(), base: PathBuf::new() });
-    }
-    let mut entries = Entries::from_toml(&text);
-    if !input.is_stream() {
-        entries.set_default_title(&path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default());
-    }
-    Ok(Source { entries, name, text, base: folder })
+    let folder = if input.is_stream() { None } else { path.parent() }.unwrap_or(Path::new(""));
+    let read = if input.is_result() { Draft::read_result(path, name) } else { Draft::read_scenario(path, name, folder) };
+    let draft = read.map_err(|error| Failure::of(&error))?;
+    Ok(Draft { wording: WORDING, ..draft })
 }
 
 /// Options override the scenario: `--set` first, then named options.
@@ -556,31 +500,25 @@ fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&Sea
     }
 }
 
-/// Validates keys; every problem names the file that they came from.
-fn validated(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failure> {
-    let robot = entries.files().into_iter().find(|(key, _)| key.path() == "robot.file");
-    // For a point the plan would promise what a trunk and limbs do not keep.
-    if let Some((key, file)) = robot.filter(|_| !entries.is_unreadable()) {
-        let message = format!("robot.file is \"{file}\", a robot with legs, and this command answers for a point alone");
-        let over_dem = entries.files().iter().any(|(key, _)| key.path() == "terrain.dem") && !entries.ask_for_legs_on_dem();
-        let legs = if over_dem { "; plans and trials of legs over a dem need terrain.route = \"free\"" } else { "" };
-        let help = format!("remove it from [robot]: [hopper] then states the limits of the point{legs}");
-        return Err(refused(vec![entries.file_problem(key, message, help)], name, text));
-    }
-    validated_with_legs(entries, name, text)
+/// Validates keys for a point; every problem names the file that they came from.
+fn validated(source: &Draft) -> Result<Scenario, Failure> {
+    source.validated(false).map_err(refused)
 }
 
-/// The same where a robot with legs is answered for.
-fn validated_with_legs(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failure> {
-    Scenario::new(entries).map_err(|problems| refused(problems, name, text))
-}
-
-/// The failure for problems of keys; it names the file that they came from.
-fn refused(mut problems: Vec<ScenarioProblem>, name: &str, text: &str) -> Failure {
-    for problem in &mut problems {
+/// The failure for problems of keys.
+fn refused(mut problems: ScenarioProblems) -> Failure {
+    for problem in &mut problems.problems {
         problem.help.push_str(hints::of_problem(problem));
     }
-    let in_file = problems.iter().any(|problem| !matches!(problem.place, Place::Option(_)));
-    let (name, source) = if in_file { (name.to_owned(), text.to_owned()) } else { (String::new(), String::new()) };
-    Failure::Scenario(ScenarioProblems { name, source, problems })
+    Failure::Scenario(problems)
+}
+
+/// The failure for a scenario that cannot be opened. `name`: what a lack of keys is said of.
+fn unopened(error: OpenError, name: &str) -> Failure {
+    match error {
+        OpenError::Problems(problems) => refused(problems),
+        OpenError::Lacking { keys, terrain, .. } => Failure::message(format!("{name}{}", lacking_on(&keys, terrain))),
+        OpenError::File(error) => error.into(),
+        other => Failure::of(&other),
+    }
 }

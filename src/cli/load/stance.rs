@@ -13,14 +13,12 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::{
-    EndOptions, apply_options, forget_terrain, lacking_on, look_at_keys, option_source, relative_name, validated_with_legs,
-};
+use super::{EndOptions, apply_options, lacking_on, look_at_keys, option_source, refused, relative_name};
 use crate::cli::{
     Failure,
     args::{Position, StanceArgs},
     claims,
-    effects::Purpose,
+    effects::{Purpose, WORDING},
     inputs, output, verbose,
     wrong_thing::Role,
 };
@@ -77,9 +75,9 @@ pub(crate) fn load_stance(args: &StanceArgs) -> Result<StanceInput, Failure> {
     apply_options(&mut source.entries, common, None, EndOptions::NONE);
     let given = source.entries.clone();
     let scale = source.entries.mesh_scale();
-    forget_terrain(&mut source.entries);
+    source.forget_terrain();
     look_at_keys(&mut source, false)?;
-    let scenario = validated_with_legs(source.entries, &source.name, &source.text)?;
+    let scenario = source.validated(true).map_err(refused)?;
     let lacking: Vec<_> = scenario.lacks_on_a_dem().into_iter().filter(|key| key.key.starts_with("surface.")).collect();
     if !lacking.is_empty() {
         let name = common.scenario.as_ref().map(|file| format!("{}: ", file.display())).unwrap_or_default();
@@ -107,7 +105,8 @@ pub(crate) fn load_stance(args: &StanceArgs) -> Result<StanceInput, Failure> {
         let read = DemOptions::default().no_data(scenario.no_data).read(&input.file);
         StanceTerrain::Dem(std::sync::Arc::new(read.map_err(|error| Failure::about(terrain, &error))?))
     };
-    let warnings: Vec<String> = Purpose::Hop.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
+    let warnings: Vec<String> =
+        Purpose::Hop.unused(&given, &scenario, &WORDING).into_iter().chain(Purpose::replaced(&given)).collect();
     output::warn_all(common.quiet, &warnings);
     let mut files = vec![input.file.clone(), named];
     files.extend(robot.files.iter().cloned());

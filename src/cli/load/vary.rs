@@ -2,14 +2,17 @@
 
 use chta::{
     scenario::{Entries, ScenarioProblem},
-    study::{Case, CellError, Variation},
+    study::{
+        Case, CellError, Variation,
+        open::{Draft, OpenCase},
+    },
 };
 
-use super::{EndOptions, Loaded, OwnKey, Source, Target, recorded, refused, typed, unprepared, validate_and_prepare};
+use super::{EndOptions, Loaded, OwnKey, Target, refused, stated, typed, unprepared, validate_and_prepare};
 use crate::cli::{
     Failure,
     args::{CommonArgs, JourneyArgs, SearchArgs},
-    effects::Purpose,
+    effects::{Purpose, WORDING},
 };
 
 /// A scenario of which keys are varied: the first case, loaded, and the source of all others.
@@ -20,8 +23,7 @@ pub(crate) struct ToVary {
     /// The keys as typed, and the terrain.
     pub(crate) variation: Variation,
     purpose: Purpose,
-    name: String,
-    text: String,
+    source: Draft,
 }
 
 /// Loads the same for keys that are varied, the terrain read once. `firsts`: the keys of the first case, and of others that take its
@@ -35,19 +37,20 @@ pub(crate) fn load_to_vary(
 ) -> Result<ToVary, Failure> {
     let ends = EndOptions::of_path(*start, *goal);
     let target = Target::chain(chain)?;
-    let Source { mut entries, name, text, base } = typed(&target, common, Some(search), ends)?;
+    let mut source = typed(&target, common, Some(search), ends)?;
     for (option, table, key, value) in own {
-        entries.set_by_option(option, table, key, value.clone());
+        source.entries.set_by_option(option, table, key, value.clone());
     }
     let mut refused = None;
-    for first in firsts(&entries)? {
-        let source = Source { entries: first, name: name.clone(), text: text.clone(), base: base.clone() };
+    for first in firsts(&source.entries)? {
+        let entries = &source.entries;
+        let first = Draft { entries: first, ..source.clone() };
         let mut kept = None;
-        let first = validate_and_prepare(&target, source, common.quiet, (ends, purpose, &entries), &mut |scenario, base| {
+        let first = validate_and_prepare(&target, first, common.quiet, (ends, purpose, entries), &mut |scenario, base| {
             Ok(kept.insert(Variation::new(entries.clone(), scenario, base)?).first.clone())
         });
         match (first, kept) {
-            (Ok(first), Some(variation)) => return Ok(ToVary { first, variation, purpose, name, text }),
+            (Ok(first), Some(variation)) => return Ok(ToVary { first, variation, purpose, source }),
             (Ok(_), None) => {}
             (Err(failure), _) => refused = refused.or(Some(failure)),
         }
@@ -58,7 +61,7 @@ pub(crate) fn load_to_vary(
 impl ToVary {
     /// The failure for problems of a varied scenario.
     pub(crate) fn refused(&self, problems: Vec<ScenarioProblem>) -> Failure {
-        refused(problems, &self.name, &self.text)
+        refused(self.source.refused(problems))
     }
 
     /// Why a cell has no answer, as a command for it alone would say.
@@ -74,9 +77,8 @@ impl ToVary {
     }
 
     /// A varied case, as if it had been loaded; its warnings are not shown.
-    pub(crate) fn loaded(&self, mut case: Case, entries: &Entries) -> Result<Loaded, Failure> {
-        case.prepared.warnings.extend(self.purpose.unused(&self.variation.entries, &case.scenario));
-        case.prepared.warnings.extend(Purpose::replaced(entries));
-        Ok(Loaded { record: recorded(&case)?, case, ends: self.first.ends })
+    pub(crate) fn loaded(&self, case: Case, entries: &Entries) -> Result<Loaded, Failure> {
+        let opened = OpenCase::new(case, self.purpose, [&self.variation.entries, entries], &WORDING)?;
+        Ok(stated(opened, self.first.ends))
     }
 }

@@ -37,7 +37,7 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
     show(
         args.answer.format,
         || legs_simulate_text(answer),
-        || input.document_on_map(DocumentKind::SimulateLegs, simulated.routed.crs().as_ref(), &simulated.warnings, answer),
+        || Ok(input.document_on_map(DocumentKind::SimulateLegs, simulated.routed.crs().as_ref(), &simulated.warnings, answer)?),
     )?;
     Ok(Answer::of(answer.plan.plan.is_traversable() && answer.shows_success()))
 }

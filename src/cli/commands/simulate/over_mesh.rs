@@ -46,7 +46,7 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
     show(
         args.answer.format,
         || mesh_simulate_text(answer),
-        || input.document(DocumentKind::SimulateMesh, &simulated.warnings, answer),
+        || Ok(input.document(DocumentKind::SimulateMesh, &simulated.warnings, answer)?),
     )?;
     Ok(Answer::of(answer.plan.is_traversable() && answer.shows_success()))
 }

@@ -1,0 +1,157 @@
+"""The compiled part of chta. Programs use the names of the package."""
+
+import os
+from collections.abc import Callable, Sequence
+from typing import final
+
+import numpy as np
+from numpy.typing import NDArray
+
+_F = NDArray[np.float64]
+_Progress = Callable[[str, int, int | None], bool | None]
+
+LIMITS: list[str]
+VERSION: str
+
+@final
+class Reply:
+    @property
+    def kind(self) -> str: ...
+    @property
+    def holds(self) -> bool: ...
+    def json(self) -> bytes: ...
+    def picture(self, png: bool) -> bytes | None: ...
+
+@final
+class Rasters:
+    @property
+    def shape(self) -> tuple[int, int]: ...
+    @property
+    def transform(self) -> tuple[float, float, float, float, float, float]: ...
+    @property
+    def crs_wkt(self) -> str | None: ...
+    def hops(self) -> NDArray[np.int16]: ...
+    def hops_back(self) -> NDArray[np.int16] | None: ...
+    def effort(self) -> _F | None: ...
+    def mobility(self) -> tuple[NDArray[np.float32], NDArray[np.float32]] | None: ...
+    def amounts(self) -> list[tuple[str, _F]]: ...
+
+@final
+class Chain:
+    def __new__(
+        cls,
+        x_m: _F,
+        z_m: _F,
+        machine: str,
+        cross_slope_deg: _F | None = None,
+        friction_coefficient: _F | None = None,
+        keep_out: NDArray[np.bool_] | None = None,
+    ) -> Chain: ...
+    def takeoff_set(self, from_x_m: _F, to_x_m: _F, threads: int | None = None) -> tuple[_F, _F, NDArray[np.int8]]: ...
+    def hop(self, from_x_m: float, to_x_m: float) -> str: ...
+
+@final
+class Dem:
+    @staticmethod
+    def open(path: str | os.PathLike[str]) -> Dem: ...
+    @staticmethod
+    def of_double(rows: int, cols: int, z_m: _F, transform: Sequence[float]) -> Dem: ...
+    @staticmethod
+    def of_single(rows: int, cols: int, z_m: NDArray[np.float32], transform: Sequence[float]) -> Dem: ...
+    @property
+    def shape(self) -> tuple[int, int]: ...
+    @property
+    def transform(self) -> list[float]: ...
+    @property
+    def crs_wkt(self) -> str | None: ...
+    def elevations(self) -> _F: ...
+    def hop_map(
+        self,
+        starts_m: Sequence[tuple[float, float]],
+        machine: str,
+        back: bool = False,
+        stride: int = 1,
+        effort: bool = False,
+        hops_max: int | None = None,
+        accept_map_scale: bool = False,
+        threads: int | None = None,
+        progress: _Progress | None = None,
+    ) -> tuple[NDArray[np.int16], _F | None, tuple[int, int], list[float], list[str]]: ...
+    def mobility(
+        self, machine: str, stride: int = 1, threads: int | None = None, progress: _Progress | None = None
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32], tuple[int, int], list[float], list[str]]: ...
+
+@final
+class Draft:
+    @staticmethod
+    def read(path: str | os.PathLike[str]) -> Draft: ...
+    @staticmethod
+    def of_toml(text: str, base: str | os.PathLike[str]) -> Draft: ...
+    @staticmethod
+    def of_tables(tables: str, base: str | os.PathLike[str]) -> Draft: ...
+    def with_keys(self, settings: str) -> Draft: ...
+    def validated(self) -> str: ...
+    def plan(
+        self,
+        prove_cells: int | None = None,
+        verify: bool = False,
+        front: str | None = None,
+        alternatives: bool = False,
+        memory_max_bytes: int | None = None,
+        threads: int | None = None,
+        progress: _Progress | None = None,
+    ) -> Reply: ...
+    def check(self, prove_cells: int | None = None, threads: int | None = None, progress: _Progress | None = None) -> Reply: ...
+    def simulate(
+        self,
+        compare: bool = False,
+        until_half_width: float | None = None,
+        first_trial: int = 0,
+        success_min: float | None = None,
+        threads: int | None = None,
+        progress: _Progress | None = None,
+    ) -> Reply: ...
+    def run(self, threads: int | None = None, progress: _Progress | None = None) -> tuple[Reply, Reply | None]: ...
+    def hop(self, from_m: Sequence[float] | None = None, to_m: Sequence[float] | None = None) -> Reply: ...
+    def map(
+        self,
+        dem: str | os.PathLike[str] | None = None,
+        starts_m: Sequence[tuple[float, float]] = [],
+        goals_m: Sequence[tuple[float, float]] = [],
+        stride: int = 1,
+        auto_nodes: bool = False,
+        effort: bool = False,
+        returns: bool = False,
+        mobility: bool = False,
+        trials: bool = False,
+        hops_max: int | None = None,
+        amounts: Sequence[str] = [],
+        memory_max_bytes: int | None = None,
+        threads: int | None = None,
+        progress: _Progress | None = None,
+    ) -> tuple[Reply, Rasters | None]: ...
+    def sites(
+        self,
+        dem: str | os.PathLike[str] | None = None,
+        candidates_m: Sequence[tuple[float, float]] = [],
+        every: int = 1,
+        targets_m: Sequence[tuple[float, float]] = [],
+        stride: int = 1,
+        auto_nodes: bool = False,
+        memory_max_bytes: int | None = None,
+        threads: int | None = None,
+        progress: _Progress | None = None,
+    ) -> Reply: ...
+    def require(
+        self,
+        vary: str,
+        from_value: float | None = None,
+        to_value: float | None = None,
+        resolution: float = 0.001,
+        prove_cells: int | None = None,
+        threads: int | None = None,
+        progress: _Progress | None = None,
+    ) -> Reply: ...
+    def trade(
+        self, vary: Sequence[str], prove_cells: int | None = None, threads: int | None = None, progress: _Progress | None = None
+    ) -> Reply: ...

@@ -1,0 +1,196 @@
+"""Campaigns: many cases of one scenario, on this machine or on a Dask cluster, in parts that survive a crash.
+
+>>> import chta
+>>> cases = [{"hopper.takeoff_speed_max_m_s": speed} for speed in (3.0, 5.0)]
+>>> done = chta.campaign.run(cases, "data/scenarios/simple_reduced.toml")
+>>> [(row["holds"], row["hops"]) for row in done.rows]
+[(False, None), (True, 5)]
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import pathlib
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from ._chta import VERSION
+from ._errors import ChtaError, InputError
+from ._scenario import Scenario, Source, scenario_of
+
+if TYPE_CHECKING:
+    import distributed
+    import pandas
+
+QUESTIONS = ("plan", "check", "simulate")
+"""What a campaign asks of every case."""
+
+Row = dict[str, Any]
+"""One case: ``case`` (its number from 0), ``key``, ``holds``, ``hops``, ``error`` and ``document`` (JSON)."""
+
+
+class Campaign:
+    """The answers of all cases, in their order."""
+
+    def __init__(self, cases: Sequence[Mapping[str, Any]], rows: list[Row]) -> None:
+        self.cases = [dict(case) for case in cases]
+        self.rows = rows
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def documents(self) -> list[dict[str, Any] | None]:
+        """The documents; ``None`` where a case has an error."""
+        return [None if row["document"] is None else json.loads(row["document"]) for row in self.rows]
+
+    def to_frame(self) -> pandas.DataFrame:
+        """One row a case: the keys that were set and the answer, without the document (extra ``pandas``)."""
+        import pandas as pd
+
+        answers = [{name: value for name, value in row.items() if name != "document"} for row in self.rows]
+        table: pandas.DataFrame = pd.DataFrame([{**case, **answer} for case, answer in zip(self.cases, answers)])
+        return table
+
+
+def key_of(scenario: Scenario, question: str) -> str:
+    """The name of a case in parts: the SHA-256 of the scenario as used, of the question and of the version."""
+    text = json.dumps([VERSION, question, scenario.tables()], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def answers(scenario: Scenario, cases: Sequence[Mapping[str, Any]], first: int, question: str, threads: int | None) -> list[Row]:
+    """The rows of some cases, of which the first has this number: one task of a cluster."""
+    return [_answer(scenario, case, first + number, question, threads) for number, case in enumerate(cases)]
+
+
+def _answer(scenario: Scenario, case: Mapping[str, Any], number: int, question: str, threads: int | None) -> Row:
+    row: Row = {"case": number, "key": None, "holds": None, "hops": None, "error": None, "document": None}
+    try:
+        varied = scenario.with_keys(case)
+        row["key"] = key_of(varied, question)
+        answer = getattr(varied, question)(threads=threads)
+    except ChtaError as error:
+        row["error"] = str(error)
+        return row
+    row["holds"], row["document"] = answer.holds, answer.json().decode()
+    row["hops"] = answer.document().get("hops")
+    return row
+
+
+def run(
+    cases: Iterable[Mapping[str, Any]] | pandas.DataFrame,
+    scenario: Source,
+    client: distributed.Client | None = None,
+    *,
+    question: str = "plan",
+    batch: int = 50,
+    folder: str | os.PathLike[str] | None = None,
+    threads: int | None = 1,
+) -> Campaign:
+    """Asks a question of every case, each of which sets keys of the scenario: mappings, or a data frame whose columns are keys.
+
+    Without a ``client`` the cases are answered here, one after the other. With a client of Dask, tasks of ``batch`` cases go to its
+    workers, which have this package and the same working folder; the tasks of a worker that dies are done again by another one. The rows
+    are the same bytes however they were made.
+
+    With a ``folder``, each batch is written there whole when it is done, and batches that are there are not computed again: after a
+    crash of this program or of the cluster, the same call goes on where it ended. ``threads`` are those of one case.
+    """
+    if question not in QUESTIONS:
+        raise InputError(f"question is {question!r}, expected one of {', '.join(QUESTIONS)}")
+    if batch < 1:
+        raise InputError(f"batch is {batch}, expected a whole number of at least 1")
+    listed = _listed(cases)
+    opened = scenario_of(scenario)
+    store = None if folder is None else _Store(pathlib.Path(folder))
+    rows: dict[int, list[Row]] = {}
+    wanted: list[tuple[int, Sequence[Mapping[str, Any]], str]] = []
+    for first in range(0, len(listed), batch):
+        part = listed[first : first + batch]
+        name = _name(opened, part, first, question)
+        kept = None if store is None else store.read(name)
+        if kept is None:
+            wanted.append((first, part, name))
+        else:
+            rows[first] = kept
+    for first, name, done in _done(opened, wanted, client, question, threads):
+        rows[first] = done
+        if store is not None:
+            store.write(name, done)
+    return Campaign(listed, [row for first in sorted(rows) for row in rows[first]])
+
+
+def _done(
+    scenario: Scenario,
+    wanted: list[tuple[int, Sequence[Mapping[str, Any]], str]],
+    client: distributed.Client | None,
+    question: str,
+    threads: int | None,
+) -> Iterator[tuple[int, str, list[Row]]]:
+    """The batches as they are done."""
+    if client is None:
+        for first, part, name in wanted:
+            yield first, name, answers(scenario, part, first, question, threads)
+        return
+    from distributed import as_completed
+
+    of_task = {}
+    for first, part, name in wanted:
+        # A task is harmless to repeat, so a dying worker is no reason to give up on it.
+        task = client.submit(answers, scenario, part, first, question, threads, key=f"chta-{name}", retries=10, pure=True)
+        of_task[task] = (first, name)
+    for task in as_completed(list(of_task)):
+        first, name = of_task.pop(task)
+        yield first, name, task.result()
+
+
+def _listed(cases: Any) -> list[dict[str, Any]]:
+    if hasattr(cases, "to_dict") and hasattr(cases, "columns"):
+        return [{str(key): value for key, value in row.items()} for row in cases.to_dict("records")]
+    return [dict(case) for case in cases]
+
+
+def _plain(value: Any) -> Any:
+    return value.tolist() if hasattr(value, "tolist") else os.fspath(value)
+
+
+def _name(scenario: Scenario, part: Sequence[Mapping[str, Any]], first: int, question: str) -> str:
+    """The name of a batch: its cases decide it, not where it is computed."""
+    text = json.dumps([VERSION, question, first, scenario.tables(), list(part)], sort_keys=True, default=_plain)
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+class _Store:
+    """The batches of a folder, each a file of JSON lines."""
+
+    def __init__(self, folder: pathlib.Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self._folder = folder
+
+    def _path(self, name: str) -> pathlib.Path:
+        return self._folder / f"part-{name}.jsonl"
+
+    def read(self, name: str) -> list[Row] | None:
+        """A batch, if it is there: a file is renamed to its place when it is whole."""
+        try:
+            lines = self._path(name).read_text(encoding="utf-8").splitlines()
+        except FileNotFoundError:
+            return None
+        return [json.loads(line) for line in lines]
+
+    def write(self, name: str, rows: list[Row]) -> None:
+        """Writes a batch whole or not at all."""
+        handle, temporary = tempfile.mkstemp(dir=self._folder, prefix=".part-")
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                for row in rows:
+                    file.write(json.dumps(row) + "\n")
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(temporary, self._path(name))
+        except BaseException:
+            pathlib.Path(temporary).unlink(missing_ok=True)
+            raise

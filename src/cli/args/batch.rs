@@ -1,0 +1,40 @@
+//! The options of the command that answers many cases.
+
+use std::path::PathBuf;
+
+use clap::Args as ClapArgs;
+
+use super::{DEFAULT_MAX_GIB, max_gib, thread_count};
+
+/// Plan many cases of one scenario: one row a case, in parts that survive a crash
+///
+/// Rows are written in parts, each closed every 50 cases or 10 s and there as a whole or not at all. A case that is refused has its reason in
+/// the column error, and the others go on. Rows do not depend on the threads.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta batch data/cases/speeds.csv --scenario data/scenarios/simple_reduced.toml -o parts")]
+pub(crate) struct BatchArgs {
+    /// Cases (CSV): one row a case, columns are scenario keys; an empty cell leaves the key as the scenario has it
+    #[arg(value_name = "CASES")]
+    pub(crate) cases: PathBuf,
+    /// Scenario (TOML) whose keys the cases set
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scenario: PathBuf,
+    /// Folder for the parts, created if it does not exist
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+    /// Go on where an earlier batch in this folder ended: a row whose scenario is the same is kept
+    #[arg(long)]
+    pub(crate) resume: bool,
+    /// All rows in the order of the cases as one table (CSV) to write [default: none]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) collect: Option<PathBuf>,
+    /// Set any scenario key; overrides the scenario [example: `--set hopper.takeoff_speed_max_m_s=8`]
+    #[arg(long, value_name = "TABLE.KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Threads to work with; the answer does not depend on it [default: the environment variable `CHTA_THREADS`, else one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = thread_count)]
+    pub(crate) threads: usize,
+    /// Most GiB read from a pipe, and from a text or mesh that is read whole
+    #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
+    pub(crate) input_max_gib: f64,
+}

@@ -1,0 +1,63 @@
+//! `chta batch`: many cases of one scenario.
+
+use std::ops::ControlFlow;
+
+use chta::{
+    progress::{Progress, Step},
+    study::{BatchRow, CaseTable},
+};
+
+use crate::cli::{
+    Answer, Failure,
+    args::BatchArgs,
+    batch_folder::BatchFolder,
+    inputs, interrupt,
+    load::load_draft,
+    output::{self, Pending},
+    threads,
+    wrong_thing::Role,
+};
+
+/// Goes on until an interrupt.
+struct UntilInterrupted;
+
+impl Progress for UntilInterrupted {
+    fn report(&self, _: &Step) -> ControlFlow<()> {
+        if interrupt::is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// Answers every case.
+pub(crate) fn run(args: &BatchArgs) -> Result<Answer, Failure> {
+    let files = [(Some(args.cases.as_path()), Role::Cases), (Some(args.scenario.as_path()), Role::ScenarioOption)];
+    inputs::look_at(args.input_max_gib, &files)?;
+    threads::start(args.threads)?;
+    let draft = load_draft(&args.scenario, &args.set)?;
+    let cases = CaseTable::read(&inputs::open(&args.cases, Role::Cases)?.file).map_err(|error| Failure::of(&error))?;
+    let (mut folder, mut rows) = BatchFolder::open(&args.output, &cases, args.resume)?;
+    let collected = args.collect.as_deref().map(Pending::begin).transpose()?;
+    rows.retain(|case, row| *case < cases.count() && !row[1].is_empty() && row[1] == cases.key(&draft, *case));
+    let kept = rows.len();
+    let wanted: Vec<usize> = (0..cases.count()).filter(|case| !rows.contains_key(case)).collect();
+    // Some cases for each thread, so that none waits long for the slowest.
+    for some in wanted.chunks(4 * rayon::current_num_threads().max(1)) {
+        let answers: Vec<BatchRow> = cases.answers(&draft, some, &UntilInterrupted);
+        interrupt::check()?;
+        folder.add(&answers)?;
+        rows.extend(some.iter().copied().zip(answers.into_iter().map(|row| row.cells)));
+    }
+    folder.close()?;
+    if let Some(file) = collected {
+        folder.collect(&rows, file)?;
+    }
+    let with = |verdict: &str| rows.values().filter(|row| row.iter().any(|cell| cell == verdict)).count();
+    let refused = rows.values().filter(|row| row.last().is_some_and(|error| !error.is_empty())).count();
+    let text = format!(
+        "cases: {}\ntraversable: {}\nrefused: {refused}\nkept from earlier: {kept}\nparts written: {}\n",
+        rows.len(),
+        with("traversable"),
+        folder.written
+    );
+    output::to_stdout(text.as_bytes())?;
+    Ok(Answer::Yes)
+}
