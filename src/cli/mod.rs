@@ -19,6 +19,7 @@ mod not_for_targets;
 mod not_for_travel;
 mod not_on_mesh;
 mod output;
+mod page;
 mod progress;
 mod run_folder;
 mod sites_input;
@@ -91,6 +92,7 @@ fn answer_of(command: Command) -> Result<Answer, Failure> {
         Command::Require(args) => commands::require::run(&args),
         Command::Trade(args) => commands::trade::run(&args),
         Command::Compare(args) => commands::compare::run(&args),
+        Command::Report(args) => commands::report::run(&args),
         Command::Stance(args) => commands::stance::run(&args),
         Command::Arena(args) => commands::arena::run(&args),
         Command::Synth(args) => commands::synth::run(&args),

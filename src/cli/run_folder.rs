@@ -11,7 +11,8 @@ use chta::{
     path::HopPath,
     report::{CrsRecord, DocumentKind, MapKnowledge, write_path_csv, write_travel_csv},
     study::{
-        Case, MeshRouted, MeshSimulated, Planned, Simulated, TargetsPlanned, TargetsSimulated, TravelPlanned, TravelSimulated,
+        Case, MeshRouted, MeshSimulated, PageDocuments, Planned, Simulated, TargetsPlanned, TargetsSimulated, TravelPlanned,
+        TravelSimulated,
     },
 };
 
@@ -19,6 +20,7 @@ use super::{
     Failure, claims,
     load::{Loaded, MeshPlanInput},
     output::{self, Pending},
+    page::{PageFile, PageInput},
     trajectory::TrajectoryFile,
 };
 
@@ -39,7 +41,8 @@ const OF_SOME_RUNS: [&str; 6] = ["chain.csv", "path.geojson", "path.prj", "simul
 pub(crate) struct RunFolder<'a> {
     folder: &'a Path,
     files: Vec<(&'static str, Vec<u8>)>,
-    in_time: Option<(Pending<'a>, Vec<u8>)>,
+    /// Files that have places of their own.
+    beside: Vec<(Pending<'a>, Vec<u8>)>,
 }
 
 /// Makes the folder of the files, unless it exists.
@@ -50,15 +53,25 @@ fn made(folder: &Path) -> Result<(), Failure> {
 }
 
 impl<'a> RunFolder<'a> {
-    /// A folder without files; `in_time`: a file beside them that is opened at once, so that its folder has to be there.
+    /// A folder without files; `beside`: files beside them that are opened at once, so that their folder has to be there.
     ///
     /// # Errors
     /// A folder that cannot be made.
-    pub(crate) fn new(folder: &'a Path, in_time: Option<&Path>) -> Result<Self, Failure> {
-        if in_time.is_some_and(|file| file.parent() == Some(folder)) {
+    pub(crate) fn new(folder: &'a Path, beside: &[Option<&Path>]) -> Result<Self, Failure> {
+        if beside.iter().flatten().any(|file| file.parent() == Some(folder)) {
             made(folder)?;
         }
-        Ok(Self { folder, files: Vec::new(), in_time: None })
+        Ok(Self { folder, files: Vec::new(), beside: Vec::new() })
+    }
+
+    /// Adds a page of the documents that were added before, which has a place of its own.
+    pub(crate) fn page(&mut self, file: Option<PageFile<'a>>, input: PageInput<'_>) -> Result<(), Failure> {
+        let Some(file) = file else { return Ok(()) };
+        let documents = self.files.iter().filter(|(name, _)| Path::new(name).extension().is_some_and(|ending| ending == "json"));
+        let texts = documents.map(|(_, bytes)| String::from_utf8_lossy(bytes).into_owned()).collect();
+        let documents = PageDocuments::read(texts).map_err(|error| Failure::of(&error))?;
+        self.beside.push(file.filled(input.page(&documents)?));
+        Ok(())
     }
 
     /// Adds the path in time, which has a place of its own.
@@ -73,7 +86,7 @@ impl<'a> RunFolder<'a> {
         path: Option<&HopPath>,
         case: &Case,
     ) -> Result<(), Failure> {
-        self.in_time = file.map(|file| file.filled(path, case)).transpose()?;
+        self.beside.extend(file.map(|file| file.filled(path, case)).transpose()?);
         Ok(())
     }
 
@@ -173,14 +186,14 @@ impl<'a> RunFolder<'a> {
 
     /// Writes all files or none, and removes those of an earlier run that this one does not have. Returns what was written, in words.
     pub(crate) fn write(self) -> Result<String, Failure> {
-        let Self { folder, files, in_time } = self;
+        let Self { folder, files, beside } = self;
         made(folder)?;
         claims::repeats(&folder.join(RESULT));
         let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();
         let pending: Result<Vec<_>, Failure> =
             files.into_iter().map(|(name, bytes)| Ok((Pending::begin(folder.join(name))?, bytes))).collect();
         let mut pending = pending?;
-        pending.extend(in_time);
+        pending.extend(beside);
         output::finish(pending)?;
         for stale in OF_SOME_RUNS.into_iter().filter(|name| !names.contains(name)) {
             let _ = fs::remove_file::<PathBuf>(folder.join(stale));

@@ -22,7 +22,7 @@ use super::{
 
 pub(crate) use arena::ArenaArgs;
 pub(crate) use journeys::{
-    CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
+    CheckArgs, CompareArgs, HopArgs, PlanArgs, ReportArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
 };
 pub(crate) use maps::{FanArgs, MapArgs, NodeSpacing};
 pub(crate) use position::{Position, place};
@@ -61,6 +61,7 @@ pub(crate) enum Command {
     Require(RequireArgs),
     Trade(TradeArgs),
     Compare(CompareArgs),
+    Report(ReportArgs),
     Stance(Box<StanceArgs>),
     Arena(Box<ArenaArgs>),
     Synth(Box<SynthArgs>),

@@ -6,7 +6,13 @@ use chta::{
 };
 
 use crate::cli::{
-    Answer, Failure, args::RunArgs, load::MeshPlanInput, not_on_mesh, output, progress::Progress, run_folder::RunFolder,
+    Answer, Failure,
+    args::RunArgs,
+    load::MeshPlanInput,
+    not_on_mesh, output,
+    page::{PageFile, PageInput},
+    progress::Progress,
+    run_folder::RunFolder,
     views::show,
 };
 
@@ -14,7 +20,8 @@ use crate::cli::{
 pub(super) fn run(args: &RunArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
     not_on_mesh::refuse(&[("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile")])?;
     output::check_folder(&args.output)?;
-    let mut folder = RunFolder::new(&args.output, None)?;
+    let mut folder = RunFolder::new(&args.output, &[args.report.as_deref()])?;
+    let page = args.report.as_deref().map(|file| PageFile::begin("--report", file)).transpose()?;
     let about = |error: &dyn std::error::Error| Failure::message(format!("{}: {error}", input.mesh.display()));
     let progress = Progress::new(args.quiet);
     let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: None, roadmap: None };
@@ -31,6 +38,7 @@ pub(super) fn run(args: &RunArgs, input: &MeshPlanInput) -> Result<Answer, Failu
     }
     drop(progress);
     output::warn_all(args.quiet, &warnings);
+    folder.page(page, PageInput::Facets(input))?;
     let written = folder.write()?;
     let text = || format!("{}{trials_text}\n{written}\n", mesh_plan_text(&answer));
     show(args.answer.format, text, || input.document(DocumentKind::RunMesh, &warnings, &answer))?;
