@@ -67,8 +67,8 @@ export class Facets {
     return [0, 1, 2].map((axis) => this.origin_m[axis] + this.vertices_m[at + axis]);
   }
 
-  /** The facets that face up, lowest first, each with its corners and the light on it. */
-  facingUp() {
+  /** The facets that face up, lowest first, each with its corners, the light on it, and whether it lies over the path beside it. */
+  facingUp(path_m) {
     const found = [];
     for (let facet = 0; facet < this.corners.length / 3; facet += 1) {
       const [a, b, c] = [0, 1, 2].map((which) => this.corner(facet, which));
@@ -77,7 +77,10 @@ export class Facets {
       const length = Math.hypot(...n);
       if (!(n[2] > 1e-6 * length)) continue;
       const light = Math.max(0, (-n[0] + n[1] + Math.SQRT2 * n[2]) / (2 * length));
-      found.push({ corners: [a, b, c], light, z_m: (a[2] + b[2] + c[2]) / 3 });
+      const middle = [0, 1, 2].map((axis) => (a[axis] + b[axis] + c[axis]) / 3);
+      const away = ([x_m, y_m]) => (x_m - middle[0]) ** 2 + (y_m - middle[1]) ** 2;
+      const beside = path_m.length > 0 ? path_m.reduce((best, at) => (away(at) < away(best) ? at : best)) : null;
+      found.push({ corners: [a, b, c], light, z_m: middle[2], isOver: beside !== null && middle[2] > beside[2] });
     }
     return found.sort((a, b) => a.z_m - b.z_m);
   }

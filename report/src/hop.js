@@ -35,11 +35,8 @@ export function hopPanel(section, mission, selection) {
     } else {
       parts.push(html('p', { class: 'note' }, `One take-off angle alone is feasible: ${fixed(least, 4)}°.`));
     }
-    parts.push(
-      html('p', {}, html('strong', {}, 'Bound by: '), `${bindingInWords(record.binding)} (the limits that set the least and the greatest feasible angle).`),
-      margins(record),
-    );
-    return parts;
+    const bound = html('p', {}, html('strong', {}, 'Bound by: '), `${bindingInWords(record.binding)} (the limits that set the least and the greatest feasible angle).`);
+    return [html('div', {}, parts, bound), margins(record)];
   }
 
   function slider(leg, least, greatest) {
@@ -106,14 +103,15 @@ export function hopPanel(section, mission, selection) {
 function margins(record) {
   const sigmas = record.margins_sigma ?? {};
   const inSigma = (key) => sigmas[key.replace(/_(m_s|deg|m|s)$/, '_sigma')];
+  const hasSigmas = Object.keys(sigmas).length > 0;
   const rows = Object.entries(record.margins ?? {})
     .filter(([key]) => key !== 'terrain_from_takeoff_m')
     .map(([key, value]) => {
       const { words, unit } = marginInWords(key);
       const at = key === 'terrain_m' && record.margins.terrain_from_takeoff_m !== undefined ? `, ${fixed(record.margins.terrain_from_takeoff_m, 2)} m from the take-off` : '';
       const sigma = inSigma(key);
-      return html('tr', {}, html('th', { scope: 'row' }, `${words}${at}`), html('td', { class: 'number' }, `${digits(value, 4)} ${unit}`), html('td', { class: 'number' }, sigma === undefined ? '' : `${digits(sigma, 3)} σ`));
+      return html('tr', {}, html('th', { scope: 'row' }, `${words}${at}`), html('td', { class: 'number' }, `${digits(value, 4)} ${unit}`), hasSigmas && html('td', { class: 'number' }, sigma === undefined ? '' : `${digits(sigma, 3)} σ`));
     });
-  const head = html('tr', {}, html('th', { scope: 'col' }, 'margin to'), html('th', { scope: 'col', class: 'number' }, 'left'), html('th', { scope: 'col', class: 'number' }, 'in σ of the errors'));
+  const head = html('tr', {}, html('th', { scope: 'col' }, 'margin to'), html('th', { scope: 'col', class: 'number' }, 'left'), hasSigmas && html('th', { scope: 'col', class: 'number' }, 'in σ of the errors'));
   return html('table', { class: 'margins' }, html('thead', {}, head), html('tbody', {}, rows));
 }

@@ -33,7 +33,7 @@ export function planFigure(section, mission, ground, selection) {
     );
   }
   section.append(controls, frame, legend);
-  const groundPicture = pictureOf(ground, state);
+  const groundPicture = pictureOf(ground, mission.legs.flatMap((leg) => leg.plannedInSpace(12) ?? []));
   const again = drawnToWidth(frame, (width) => frame.replaceChildren(...drawing(width)));
 
   function show(change) {
@@ -134,8 +134,8 @@ function thinned({ rows, columns, of_rows, of_columns, stride }) {
 
 function cutOut({ corners_count, of_facets }) {
   const shown = corners_count / 3;
-  if (shown === of_facets) return `All ${count(of_facets, 'facet')} of the mesh; from above, those that face up.`;
-  return `The ${shown} facets of the mesh nearest to the path, of ${of_facets}; from above, those that face up.`;
+  if (shown === of_facets) return `From above, of all ${count(of_facets, 'facet')} of the mesh, those that face up; those over the path are pale.`;
+  return `The ${shown} facets of the mesh nearest to the path, of ${of_facets}; from above, those that face up, and those over the path pale.`;
 }
 
 function extent(mission, ground, near) {
@@ -150,6 +150,9 @@ function extent(mission, ground, near) {
   let [south_m, north_m] = [Math.min(...points.map(([, y]) => y)), Math.max(...points.map(([, y]) => y))];
   const room_m = 0.12 * Math.max(east_m - west_m, north_m - south_m, 1e-6) + 0.25 * Math.max(0, 0.5 * (east_m - west_m) - (north_m - south_m));
   [west_m, east_m, south_m, north_m] = [west_m - room_m, east_m + room_m, south_m - room_m, north_m + room_m];
+  // A path to the north or south gets ground on both sides, a path to the east or west on neither: pages are wide.
+  const missing_m = Math.max(0, 1.1 * (north_m - south_m) - (east_m - west_m)) / 2;
+  [west_m, east_m] = [west_m - missing_m, east_m + missing_m];
   if (!whole) return { west_m, east_m, south_m, north_m };
   return {
     west_m: Math.max(west_m, whole.west_m),
@@ -160,11 +163,11 @@ function extent(mission, ground, near) {
 }
 
 /** The ground as a canvas with its bounds; drawn once for every choice of bands and layers. */
-function pictureOf(ground) {
+function pictureOf(ground, path_m) {
   const kept = new Map();
   return (state) => {
     const key = `${state.bands} ${[...state.layers].sort().join(',')}`;
-    if (!kept.has(key)) kept.set(key, ground.posts ? postsPicture(ground, state) : facetsPicture(ground.facets));
+    if (!kept.has(key)) kept.set(key, ground.posts ? postsPicture(ground, state) : facetsPicture(ground.facets, path_m));
     return kept.get(key);
   };
 }
@@ -197,13 +200,14 @@ function postsPicture({ posts, layers }, state) {
   return { element, bounds: { west_m: west_m - x, east_m: east_m + x, south_m: south_m - y, north_m: north_m + y } };
 }
 
-function facetsPicture(facets) {
+function facetsPicture(facets, path_m) {
   const { bounds } = facets;
   const [wide_m, high_m] = [bounds.east_m - bounds.west_m, bounds.north_m - bounds.south_m];
   const scale = 1600 / Math.max(wide_m, high_m);
   const element = html('canvas', { width: Math.max(1, Math.round(wide_m * scale)), height: Math.max(1, Math.round(high_m * scale)) });
   const context = element.getContext('2d');
-  for (const { corners, light } of facets.facingUp()) {
+  for (const { corners, light, isOver } of facets.facingUp(path_m)) {
+    context.globalAlpha = isOver ? 0.25 : 1;
     const grey = Math.round(255 * (0.35 + 0.6 * light));
     context.fillStyle = `rgb(${grey}, ${grey}, ${Math.round(0.97 * grey)})`;
     context.strokeStyle = context.fillStyle;
@@ -214,6 +218,12 @@ function facetsPicture(facets) {
     context.stroke();
   }
   return { element, bounds };
+}
+
+/** The greatest of 1, 2 and 5 times a power of ten that is at most this. */
+function roundBelow(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return [5, 2, 1].map((factor) => factor * power).find((candidate) => candidate <= value);
 }
 
 /** Frame, axes, scale bar and north arrow. */
@@ -238,7 +248,7 @@ function decorate(root, { x, y, view, left, w, h, scale }) {
     svg('text', { class: 'axis-name', x: left + w / 2, y: TOP + h + 34, 'text-anchor': 'middle' }, 'map x, east (m)'),
     svg('text', { class: 'axis-name', x: 12, y: TOP + h / 2, transform: `rotate(-90 12 ${TOP + h / 2})`, 'text-anchor': 'middle' }, 'map y, north (m)'),
   );
-  const bar_m = ticks(0, (0.3 * w) / scale, 1)[1] ?? (0.2 * w) / scale;
+  const bar_m = roundBelow((0.3 * w) / scale);
   root.append(
     svg('path', { class: 'scale', d: `M${left} ${TOP - 14}v6h${bar_m * scale}v-6` }),
     svg('text', { class: 'number', x: left + bar_m * scale + 6, y: TOP - 8 }, `${fixed(bar_m)} m`),

@@ -5,7 +5,7 @@ import { drawnToWidth, html, path, svg, tickDecimals, ticks } from './dom.js';
 import { selectByArrows } from './selection.js';
 import { count, fixed } from './words.js';
 
-const LEFT = 62;
+const LEFT = 76;
 const RIGHT = 12;
 const GAP = 44;
 
@@ -55,13 +55,15 @@ export function profileFigure(section, mission, selection) {
     root.append(plot);
     plot.append(...ground(mission, x, z, top + profileHeight));
     for (const leg of mission.legs) plot.append(drawnLeg(leg, x, z));
-    plot.append(...marks(mission, x, top, profileHeight));
+    plot.append(...marks(mission, x, width - RIGHT, top, profileHeight));
     if (selection.tried) {
       const points = selection.selected.alongProfile(selection.tried, 64).map(([s, h]) => [x(s), z(h)]);
       plot.append(svg('path', { class: 'arc tried', d: path(points) }));
     }
     axes(root, { x, y: z, view, left: LEFT, top, width: plotWidth, height: profileHeight, label: 'height (m)', low: view.low_m, high: view.high_m });
-    if (hasHops) root.append(...angles(x, anglesTop, anglesHeight, plotWidth, view));
+    if (hasHops) root.append(angles(x, anglesTop, anglesHeight, plotWidth, view));
+    const below = hasHops ? anglesTop + anglesHeight : top + profileHeight;
+    root.append(svg('text', { class: 'axis-name', x: LEFT + plotWidth / 2, y: below + 34, 'text-anchor': 'middle' }, 'distance along the path (m)'));
     return root;
   }
 
@@ -85,8 +87,9 @@ export function profileFigure(section, mission, selection) {
 
   function angles(x, top, height, width, view) {
     const all = mission.hops.flatMap((leg) => leg.window_deg);
-    const low = Math.min(0, Math.floor(Math.min(...all) / 10) * 10);
-    const high = 90;
+    // The angles that there are, to the next tens: windows of two degrees are not seen on an axis of ninety.
+    const low = Math.floor((Math.min(...all) - 1) / 10) * 10;
+    const high = Math.min(90, Math.ceil((Math.max(...all) + 1) / 10) * 10);
     const y = (angle_deg) => top + ((high - angle_deg) / (high - low)) * height;
     const root = svg('g', {});
     const plot = svg('g', { 'clip-path': 'url(#clip-angles)' });
@@ -110,8 +113,7 @@ export function profileFigure(section, mission, selection) {
     }
     root.append(plot);
     axes(root, { x, y, view, left: LEFT, top, width, height, label: 'take-off angle (°)', low, high });
-    root.append(svg('text', { class: 'axis-name', x: LEFT + width / 2, y: top + height + 34, 'text-anchor': 'middle' }, 'distance along the path (m)'));
-    return [root];
+    return root;
   }
 }
 
@@ -143,11 +145,13 @@ function ground(mission, x, z, bottom) {
 }
 
 /** Where the path could not go on, and where visits end. */
-function marks(mission, x, top, height) {
+function marks(mission, x, right, top, height) {
   const { frontier, goal_x_m, start_x_m, hops } = mission.value;
   const line = (at_m, text, name) => [
     svg('line', { class: name, x1: x(at_m), x2: x(at_m), y1: top, y2: top + height }),
-    svg('text', { class: 'mark', x: x(at_m) + 4, y: top + 12 }, text),
+    x(at_m) > right - 60
+      ? svg('text', { class: 'mark', x: x(at_m) - 4, y: top + 12, 'text-anchor': 'end' }, text)
+      : svg('text', { class: 'mark', x: x(at_m) + 4, y: top + 12 }, text),
   ];
   const found = [];
   if (hops === null && start_x_m !== undefined && mission.legs.length === 0) {

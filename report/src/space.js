@@ -35,10 +35,14 @@ const COLOURS = { hop: '#0072b2', drive: '#111111', selected: '#d55e00', tried: 
 
 export function spaceFigure(section, mission, ground, selection) {
   const canvas = html('canvas', { tabindex: '0', role: 'img', 'aria-label': 'Ground and arcs in three dimensions; arrow keys turn the view, plus and minus zoom' });
-  let renderer;
+  let renderer = null;
   try {
-    renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    // Asked first on a canvas of its own: three.js tells the console where there is none.
+    if (html('canvas').getContext('webgl2')) renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
   } catch {
+    renderer = null;
+  }
+  if (renderer === null) {
     section.append(html('p', { class: 'note', id: 'no-webgl' }, 'This browser has no WebGL: the ground in three dimensions is left out. All numbers and the other figures are complete.'));
     return;
   }
@@ -49,9 +53,8 @@ export function spaceFigure(section, mission, ground, selection) {
     'div',
     { class: 'controls' },
     html('label', {}, 'Vertical exaggeration ', html('input', { type: 'range', id: 'exaggeration', min: '1', max: '6', step: '0.5', value: '1', oninput: (event) => exaggerate(event.target) }), ' ', times),
-    html('button', { type: 'button', class: 'no-print', onclick: () => view.look([0, -0.0001, 1]) }, 'From above'),
-    html('button', { type: 'button', class: 'no-print', onclick: () => view.look([0.25, -1, 0.65]) }, 'From the south'),
-    html('button', { type: 'button', class: 'no-print', onclick: () => view.look([-1, -0.25, 0.65]) }, 'From the west'),
+    html('label', { class: 'no-print' }, html('input', { type: 'checkbox', id: 'see-through', checked: ground.facets !== null, onchange: (event) => view.seeThrough(event.target.checked) }), ' see through the ground'),
+    html('span', { class: 'no-print' }, 'from ', [['above', [0, -0.0001, 1]], ['south', [0.25, -1, 0.65]], ['west', [-1, -0.25, 0.65]]].map(([name, direction]) => [html('button', { type: 'button', onclick: () => view.look(direction) }, name), ' '])),
   );
   section.append(controls, frame, html('p', { class: 'note' }, 'Drag to turn, wheel or pinch to zoom, right button or two fingers to move. Click an arc to select its hop.'));
   drawnToWidth(frame, (width) => view.resize(width, Math.round(Math.min(560, Math.max(280, 0.62 * width)))));
@@ -97,8 +100,9 @@ class View {
     this.size_m = Math.max(...bounds.slice(0, 2).map(([low, high]) => high - low), 1e-3);
     this.world = new Group();
     this.scene.add(this.world);
-    if (ground.posts) this.world.add(this.#posts(ground));
-    if (ground.facets) this.world.add(this.#facets(ground.facets));
+    this.grounds = [ground.posts && this.#posts(ground), ground.facets && this.#facets(ground.facets)].filter(Boolean);
+    this.world.add(...this.grounds);
+    this.seeThrough(ground.facets !== null);
     this.lines = mission.legs.map((leg) => this.#leg(leg)).filter(Boolean);
     this.triedLine = this.#line([[0, 0, 0], [0, 0, 0]], COLOURS.tried, 3.5, true);
     this.triedLine.visible = false;
@@ -159,8 +163,7 @@ class View {
     geometry.setAttribute('position', new BufferAttribute(positions, 3));
     geometry.setIndex(new BufferAttribute(facets.corners, 1));
     geometry.computeVertexNormals();
-    // Facets that face away are left out, so that one looks into a cave from outside.
-    return new Mesh(geometry, new MeshLambertMaterial({ color: '#c9c2b6', flatShading: true }));
+    return new Mesh(geometry, new MeshLambertMaterial({ color: '#c9c2b6', flatShading: true, side: DoubleSide }));
   }
 
   #line(points, colour, width_px, dashed = false) {
@@ -215,7 +218,7 @@ class View {
 
   /** Looks at the middle of the path from a direction. */
   look(direction) {
-    const distance_m = 1.5 * this.size_m + 2;
+    const distance_m = 1.35 * this.size_m;
     this.controls.target.set(0, 0, 0);
     this.camera.position.copy(new Vector3(...direction).normalize().multiplyScalar(distance_m));
     this.controls.update();
@@ -231,6 +234,12 @@ class View {
     if (turned.angleTo(this.camera.up) > 0.05 && turned.angleTo(this.camera.up) < 3.0) offset.copy(turned);
     this.camera.position.copy(this.controls.target).add(offset.multiplyScalar(zoom));
     this.controls.update();
+    this.draw();
+  }
+
+  /** Whether arcs are seen behind the ground and inside caves. */
+  seeThrough(on) {
+    for (const { material } of this.grounds) Object.assign(material, { transparent: on, opacity: on ? 0.35 : 1, depthWrite: !on, needsUpdate: true });
     this.draw();
   }
 

@@ -16,7 +16,7 @@ export function tradeSection(section, mission) {
   const at = keys.map(nearest);
   const rowAt = (indices) => trade.rows.find((row) => keys.every(({ key, values }, i) => row[key] === values[indices[i]]));
   const answer = html('p', { id: 'trade-answer', 'aria-live': 'polite' });
-  section.append(html('p', { class: 'note' }, 'Fewest hops in every computed cell. The sliders look up these cells; they start at the cell nearest to this scenario. No other value was computed.'));
+  section.append(html('p', { class: 'note' }, 'Fewest hops in every computed cell. The sliders look up these cells; they start at the cell nearest to this scenario. No other value was computed.'), ...(trade.warnings ?? []).map((text) => html('p', { class: 'note' }, `Warning: ${text}.`)));
 
   const named = (key) => {
     const { words, unit } = keyInWords(key.split('.')[1] ?? key);

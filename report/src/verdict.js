@@ -36,7 +36,8 @@ export function header(mission) {
   const facts = totals(mission);
   if (facts.length > 0) head.append(html('dl', { class: 'facts' }, facts.map(([term, text]) => html('div', {}, html('dt', {}, term), html('dd', {}, text)))));
   head.append(...noPath(mission));
-  const warnings = [...new Set(mission.answers.flatMap((answer) => answer.value.warnings ?? []))];
+  // Those of a trade stand beside it: it answers another question.
+  const warnings = [...new Set(mission.answers.filter((answer) => answer.value !== mission.trade).flatMap((answer) => answer.value.warnings ?? []))];
   if (warnings.length > 0) {
     head.append(html('details', { class: 'warnings', open: true }, html('summary', {}, count(warnings.length, 'warning')), html('ul', {}, warnings.map((text) => html('li', {}, text)))));
   }

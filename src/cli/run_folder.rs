@@ -17,7 +17,9 @@ use chta::{
 };
 
 use super::{
-    Failure, claims,
+    Failure,
+    args::RunArgs,
+    claims,
     load::{Loaded, MeshPlanInput},
     output::{self, Pending},
     page::{PageFile, PageInput},
@@ -43,6 +45,8 @@ pub(crate) struct RunFolder<'a> {
     files: Vec<(&'static str, Vec<u8>)>,
     /// Files that have places of their own.
     beside: Vec<(Pending<'a>, Vec<u8>)>,
+    /// The file of the page, until its content is known.
+    page: Option<PageFile<'a>>,
 }
 
 /// Makes the folder of the files, unless it exists.
@@ -53,20 +57,24 @@ fn made(folder: &Path) -> Result<(), Failure> {
 }
 
 impl<'a> RunFolder<'a> {
-    /// A folder without files; `beside`: files beside them that are opened at once, so that their folder has to be there.
+    /// The folder of a run without files, after checking that it can be written to. Files beside it are opened at once, so that the folder is made
+    /// if they lie in it.
     ///
     /// # Errors
-    /// A folder that cannot be made.
-    pub(crate) fn new(folder: &'a Path, beside: &[Option<&Path>]) -> Result<Self, Failure> {
-        if beside.iter().flatten().any(|file| file.parent() == Some(folder)) {
-            made(folder)?;
+    /// A folder or file that cannot be made.
+    pub(crate) fn begin(args: &'a RunArgs) -> Result<Self, Failure> {
+        output::check_folder(&args.output)?;
+        let beside = [args.trajectory.trajectory.as_deref(), args.report.as_deref()];
+        if beside.iter().flatten().any(|file| file.parent() == Some(&args.output)) {
+            made(&args.output)?;
         }
-        Ok(Self { folder, files: Vec::new(), beside: Vec::new() })
+        let page = args.report.as_deref().map(|file| PageFile::begin("--report", file)).transpose()?;
+        Ok(Self { folder: &args.output, files: Vec::new(), beside: Vec::new(), page })
     }
 
-    /// Adds a page of the documents that were added before, which has a place of its own.
-    pub(crate) fn page(&mut self, file: Option<PageFile<'a>>, input: PageInput<'_>) -> Result<(), Failure> {
-        let Some(file) = file else { return Ok(()) };
+    /// The page of the documents, if there is one.
+    fn page(&mut self, input: PageInput<'_>) -> Result<(), Failure> {
+        let Some(file) = self.page.take() else { return Ok(()) };
         let documents = self.files.iter().filter(|(name, _)| Path::new(name).extension().is_some_and(|ending| ending == "json"));
         let texts = documents.map(|(_, bytes)| String::from_utf8_lossy(bytes).into_owned()).collect();
         let documents = PageDocuments::read(texts).map_err(|error| Failure::of(&error))?;
@@ -184,9 +192,11 @@ impl<'a> RunFolder<'a> {
         Ok(())
     }
 
-    /// Writes all files or none, and removes those of an earlier run that this one does not have. Returns what was written, in words.
-    pub(crate) fn write(self) -> Result<String, Failure> {
-        let Self { folder, files, beside } = self;
+    /// Writes all files or none, with the page over this ground, and removes those of an earlier run that this one does not have. Returns what was
+    /// written, in words.
+    pub(crate) fn write(mut self, input: PageInput<'_>) -> Result<String, Failure> {
+        self.page(input)?;
+        let Self { folder, files, beside, .. } = self;
         made(folder)?;
         claims::repeats(&folder.join(RESULT));
         let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();

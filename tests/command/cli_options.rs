@@ -10,7 +10,7 @@ use std::{
 
 use crate::desk::{ACROSS, CHAIN, Desk, FORWARD_ONLY, FOUR_LEGS, Ran};
 
-const COMMANDS: [&str; 18] = [
+const COMMANDS: [&str; 19] = [
     "run",
     "slice",
     "map",
@@ -21,6 +21,7 @@ const COMMANDS: [&str; 18] = [
     "require",
     "trade",
     "compare",
+    "report",
     "simulate",
     "stance",
     "arena",
@@ -56,7 +57,8 @@ const ON_MISSING_DATA: [&str; 1] = ["--no-data"];
 /// An option, a command line without it, and one with it.
 type Trial = (&'static str, &'static [&'static str], &'static [&'static str]);
 
-const RUN: [Trial; 6] = [
+const RUN: [Trial; 7] = [
+    ("--report", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--report", "out/page.html"]),
     ("--trajectory", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--trajectory", "t.csv"]),
     (
         "--step-s",
@@ -585,6 +587,11 @@ const PLAN: [Trial; 24] = [
         &["plan", "scenario.toml", "--clearance-m", "50", "--set", "hopper.clearance_taper=9"],
     ),
     ("--quiet", &["plan", "scenario.toml", "--body", "bennu"], &["plan", "scenario.toml", "--body", "bennu", "--quiet"]),
+];
+
+const REPORT: [Trial; 2] = [
+    ("--output", &["report", "other_path.json", "-o", "page.html"], &["report", "other_path.json", "-o", "elsewhere.html"]),
+    ("--quiet", &["report", "other_path.json", "-o", "page.html"], &["report", "other_path.json", "-o", "page.html", "--quiet"]),
 ];
 
 const MAN: [Trial; 1] = [("--output", &["man", "-o", "pages"], &["man", "-o", "elsewhere"])];
@@ -1387,6 +1394,7 @@ fn every_option_changes_the_output() {
         ("require", &REQUIRE),
         ("trade", &TRADE),
         ("compare", &COMPARE),
+        ("report", &REPORT),
         ("simulate", &SIMULATE),
         ("stance", &STANCE),
         ("arena", &ARENA),
@@ -1521,6 +1529,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 "--mobility",
                 "--paths",
                 "--profiles",
+                "--report",
                 "--trajectory",
             ]
             .contains(&name.as_str());
@@ -1554,6 +1563,9 @@ fn every_example_runs() {
         let desk = desk();
         if data.exists() {
             std::os::unix::fs::symlink(&data, desk.path().join("data")).unwrap();
+        }
+        if command == "report" {
+            assert_eq!(desk.run(&["run", "scenario.toml", "-o", "out"]).status, 0);
         }
         let ran = desk.run(&words.iter().map(String::as_str).collect::<Vec<_>>());
         assert!(ran.status < 2 && !ran.stderr.contains("error"), "chta {}: {ran:?}", words.join(" "));

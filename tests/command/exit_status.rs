@@ -9,7 +9,7 @@ use crate::desk::{ACROSS, Desk, FOUR_LEGS};
 /// A command that ends with 0, and one that ends with 1.
 type Case = (&'static str, &'static [&'static str], Option<&'static [&'static str]>);
 
-const CASES: [Case; 19] = [
+const CASES: [Case; 20] = [
     ("run", &["run", "scenario.toml", "-o", "out"], Some(&["run", "slippery.toml", "-o", "out"])),
     ("slice", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], None),
     ("fan", &["fan", "ground.tif", "--from", "9,9", "--headings", "4", "--length", "5", "--scenario", "map.toml"], None),
@@ -41,6 +41,7 @@ const CASES: [Case; 19] = [
         &["compare", "scenario.toml", "slippery.toml"],
         Some(&["compare", "scenario.toml", "slippery.toml", "--require-all"]),
     ),
+    ("report", &["report", "result.json", "-o", "page.html"], None),
     ("simulate", &["simulate", "trials.toml"], Some(&["simulate", "slippery.toml"])),
     (
         "stance",
@@ -72,6 +73,7 @@ fn every_command_ends_with_the_status_of_the_documents() {
         desk.write("arena.toml", ACROSS);
         desk.write("four_legs.toml", FOUR_LEGS);
         desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
+        desk.write("result.json", desk.json(&["plan", "scenario.toml"]).to_string());
         for (status, words) in [(0, Some(yes)), (1, no)] {
             let Some(words) = words else { continue };
             let ran = desk.run(words);
@@ -79,7 +81,8 @@ fn every_command_ends_with_the_status_of_the_documents() {
         }
         // Bad input: an option that no command has, and where there is an input, one that is absent.
         let mut bad = vec![[yes, &["--no-such-option"]].concat()];
-        if let Some(at) = yes.iter().position(|word| [".toml", ".tif"].iter().any(|end| word.ends_with(end)) && *word != "new.tif")
+        if let Some(at) =
+            yes.iter().position(|word| [".toml", ".tif", ".json"].iter().any(|end| word.ends_with(end)) && *word != "new.tif")
         {
             let mut absent = yes.to_vec();
             absent[at] = "absent.toml";
