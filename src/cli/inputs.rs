@@ -153,15 +153,25 @@ pub(crate) fn look_at_pairs(chain: &Path, common: &CommonArgs, pairs: Option<&Pa
 
 /// Looks at several scenarios, of which no two may be the same pipe: the second reading would find nothing.
 pub(crate) fn look_at_scenarios(max_gib: f64, scenarios: &[PathBuf]) -> Result<(), Failure> {
+    look_at_all(max_gib, scenarios, Role::Scenario)
+}
+
+/// The same for several results.
+pub(crate) fn look_at_results(max_gib: f64, results: &[PathBuf]) -> Result<(), Failure> {
+    look_at_all(max_gib, results, Role::Result)
+}
+
+fn look_at_all(max_gib: f64, scenarios: &[PathBuf], role: Role) -> Result<(), Failure> {
     for (i, file) in scenarios.iter().enumerate() {
         if is_stream(file) && scenarios[..i].iter().any(|other| same_stream(other, file)) {
             return Err(Failure::message(format!(
-                "{}: found twice as SCENARIO, but what comes through a pipe is read only once: give one of the two as a file",
-                file.display()
+                "{}: found twice as {}, but what comes through a pipe is read only once: give one of the two as a file",
+                file.display(),
+                role.name()
             )));
         }
     }
-    let files: Vec<_> = scenarios.iter().map(|file| (Some(file.as_path()), Role::Scenario)).collect();
+    let files: Vec<_> = scenarios.iter().map(|file| (Some(file.as_path()), role)).collect();
     look_at(max_gib, &files)
 }
 

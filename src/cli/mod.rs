@@ -20,6 +20,7 @@ mod not_for_targets;
 mod not_for_travel;
 mod not_on_mesh;
 mod output;
+mod page;
 mod progress;
 mod run_folder;
 mod sites_input;
@@ -93,6 +94,7 @@ fn answer_of(command: Command) -> Result<Answer, Failure> {
         Command::Trade(args) => commands::trade::run(&args),
         Command::Compare(args) => commands::compare::run(&args),
         Command::Batch(args) => commands::batch::run(&args),
+        Command::Report(args) => commands::report::run(&args),
         Command::Stance(args) => commands::stance::run(&args),
         Command::Arena(args) => commands::arena::run(&args),
         Command::Synth(args) => commands::synth::run(&args),

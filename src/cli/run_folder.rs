@@ -11,15 +11,18 @@ use chta::{
     path::HopPath,
     report::{CrsRecord, DocumentKind, MapKnowledge, write_path_csv, write_travel_csv},
     study::{
-        Case, LegsRouted, LegsSimulated, MeshRouted, MeshSimulated, Planned, Simulated, TargetsPlanned, TargetsSimulated,
-        TravelPlanned, TravelSimulated,
+        Case, LegsRouted, LegsSimulated, MeshRouted, MeshSimulated, PageDocuments, Planned, Simulated, TargetsPlanned,
+        TargetsSimulated, TravelPlanned, TravelSimulated,
     },
 };
 
 use super::{
-    Failure, claims,
+    Failure,
+    args::RunArgs,
+    claims,
     load::{Loaded, MeshPlanInput},
     output::{self, Pending},
+    page::{PageFile, PageInput},
     trajectory::TrajectoryFile,
 };
 
@@ -44,7 +47,10 @@ const OF_SOME_RUNS: [&str; 7] =
 pub(crate) struct RunFolder<'a> {
     folder: &'a Path,
     files: Vec<(&'static str, Vec<u8>)>,
-    in_time: Option<(Pending<'a>, Vec<u8>)>,
+    /// Files that have places of their own.
+    beside: Vec<(Pending<'a>, Vec<u8>)>,
+    /// The file of the page, until its content is known.
+    page: Option<PageFile<'a>>,
 }
 
 /// Makes the folder of the files, unless it exists.
@@ -55,15 +61,29 @@ fn made(folder: &Path) -> Result<(), Failure> {
 }
 
 impl<'a> RunFolder<'a> {
-    /// A folder without files; `in_time`: a file beside them that is opened at once, so that its folder has to be there.
+    /// The folder of a run without files, after checking that it can be written to. Files beside it are opened at once, so that the folder is made
+    /// if they lie in it.
     ///
     /// # Errors
-    /// A folder that cannot be made.
-    pub(crate) fn new(folder: &'a Path, in_time: Option<&Path>) -> Result<Self, Failure> {
-        if in_time.is_some_and(|file| file.parent() == Some(folder)) {
-            made(folder)?;
+    /// A folder or file that cannot be made.
+    pub(crate) fn begin(args: &'a RunArgs) -> Result<Self, Failure> {
+        output::check_folder(&args.output)?;
+        let beside = [args.trajectory.trajectory.as_deref(), args.report.as_deref()];
+        if beside.iter().flatten().any(|file| file.parent() == Some(&args.output)) {
+            made(&args.output)?;
         }
-        Ok(Self { folder, files: Vec::new(), in_time: None })
+        let page = args.report.as_deref().map(|file| PageFile::begin("--report", file)).transpose()?;
+        Ok(Self { folder: &args.output, files: Vec::new(), beside: Vec::new(), page })
+    }
+
+    /// The page of the documents, if there is one.
+    fn page(&mut self, input: PageInput<'_>) -> Result<(), Failure> {
+        let Some(file) = self.page.take() else { return Ok(()) };
+        let documents = self.files.iter().filter(|(name, _)| Path::new(name).extension().is_some_and(|ending| ending == "json"));
+        let texts = documents.map(|(_, bytes)| String::from_utf8_lossy(bytes).into_owned()).collect();
+        let documents = PageDocuments::read(texts).map_err(|error| Failure::of(&error))?;
+        self.beside.push(file.filled(input.page(&documents)?));
+        Ok(())
     }
 
     /// Adds the path in time, which has a place of its own.
@@ -78,7 +98,7 @@ impl<'a> RunFolder<'a> {
         path: Option<&HopPath>,
         case: &Case,
     ) -> Result<(), Failure> {
-        self.in_time = file.map(|file| file.filled(path, case)).transpose()?;
+        self.beside.extend(file.map(|file| file.filled(path, case)).transpose()?);
         Ok(())
     }
 
@@ -202,16 +222,18 @@ impl<'a> RunFolder<'a> {
         Ok(())
     }
 
-    /// Writes all files or none, and removes those of an earlier run that this one does not have. Returns what was written, in words.
-    pub(crate) fn write(self) -> Result<String, Failure> {
-        let Self { folder, files, in_time } = self;
+    /// Writes all files or none, with the page over this ground, and removes those of an earlier run that this one does not have. Returns what was
+    /// written, in words.
+    pub(crate) fn write(mut self, input: PageInput<'_>) -> Result<String, Failure> {
+        self.page(input)?;
+        let Self { folder, files, beside, .. } = self;
         made(folder)?;
         claims::repeats(&folder.join(RESULT));
         let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();
         let pending: Result<Vec<_>, Failure> =
             files.into_iter().map(|(name, bytes)| Ok((Pending::begin(folder.join(name))?, bytes))).collect();
         let mut pending = pending?;
-        pending.extend(in_time);
+        pending.extend(beside);
         output::finish(pending)?;
         for stale in OF_SOME_RUNS.into_iter().filter(|name| !names.contains(name)) {
             let _ = fs::remove_file::<PathBuf>(folder.join(stale));

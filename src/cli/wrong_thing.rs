@@ -20,6 +20,8 @@ pub(crate) enum Role {
     Scenario,
     /// `--scenario`.
     ScenarioOption,
+    /// RESULT of `report`.
+    Result,
     /// DEM of `map` and `fan`.
     Dem,
     /// DEM|MESH of `slice`.
@@ -72,6 +74,7 @@ impl Role {
             Self::HopTerrain => "TERRAIN",
             Self::Scenario => "SCENARIO",
             Self::ScenarioOption => "--scenario",
+            Self::Result => "RESULT",
             Self::Dem => "DEM",
             Self::Terrain => "DEM|MESH",
             Self::Pairs => "--pairs",
@@ -98,6 +101,7 @@ impl Role {
                  (TOML) or a result (JSON)"
             }
             Self::Scenario | Self::ScenarioOption => "a scenario (TOML) or a result (JSON)",
+            Self::Result => "a result (JSON) that chta wrote",
             Self::Dem | Self::DemKey => "an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid)",
             Self::Terrain => "an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid) or a mesh (OBJ, STL, PLY)",
             Self::Pairs => "a CSV file of pairs with the header start_x_m,goal_x_m",
@@ -153,6 +157,7 @@ impl Role {
                 Self::Chain => *kind == Kind::ChainCsv || of_scenario,
                 Self::HopTerrain => *kind == Kind::ChainCsv || of_scenario || of_dem || of_mesh || of_points,
                 Self::Scenario | Self::ScenarioOption => of_scenario,
+                Self::Result => matches!(kind, Kind::Result | Kind::Json),
                 Self::Dem | Self::DemKey => of_dem || of_points,
                 Self::MapTarget => of_dem || of_points || of_scenario,
                 Self::Terrain => of_dem || of_mesh || of_points,
@@ -270,6 +275,7 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
         (FileKind::ChainCsv, Role::Pairs) => format!("the chain comes first: `chta check {name} --pairs PAIRS.csv`"),
         (FileKind::PairsCsv, Role::Chain | Role::HopTerrain) => format!("the chain comes first: `chta check CHAIN --pairs {name}`"),
         (FileKind::PathCsv, _) => format!("a path is an answer: give {} that it was planned on", role.expected()),
+        (FileKind::Scenario, Role::Result) => format!("run it first: `chta run {name} -o out`, and give out/result.json"),
         (FileKind::Scenario | FileKind::Result, Role::Dem | Role::Terrain) => {
             format!("give the terrain first, and the scenario with --scenario {name}")
         }

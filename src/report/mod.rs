@@ -27,6 +27,8 @@ mod mesh_plan_answer;
 mod mesh_simulate_answer;
 mod objective_record;
 mod outage_record;
+#[cfg(feature = "plot")]
+mod page;
 mod path_record;
 mod plan_answer;
 mod proof_record;
@@ -96,6 +98,8 @@ pub use mesh_plan_answer::{
 pub use mesh_simulate_answer::{MeshSimulateAnswer, mesh_simulate_text};
 pub use objective_record::{AmountRecord, BudgetRecord, ObjectiveRecord};
 pub use outage_record::OutageRecord;
+#[cfg(feature = "plot")]
+pub use page::{PageDocument, PageFacets, PageGround, PageLayer, PagePosts, ProfileCut, ProfilePiece, page_html, page_template};
 pub use path_record::{
     AimRecord, EnergyBasis, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv,
 };

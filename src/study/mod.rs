@@ -66,6 +66,8 @@ mod nodes;
 mod objective;
 mod on_body;
 pub mod open;
+#[cfg(feature = "plot")]
+mod page;
 mod physics;
 mod pipeline;
 mod plan;
@@ -123,6 +125,8 @@ pub use mesh_read_back::{MeshChecked, MeshReadBackError, MeshResultPath, check_o
 pub use mesh_route::{MeshRouteError, MeshRouteQuestion, MeshRouted, mesh_route};
 pub use mesh_trials::{MeshSimulated, MeshTrialsError, simulate_over_mesh};
 pub use on_body::{OfBody, dem_on_body, on_body};
+#[cfg(feature = "plot")]
+pub use page::{DocumentInPage, PageDocuments, PageError, page_ground, page_ground_over_facets};
 pub use physics::{Extent, Extremes, TooLarge, constant_gravity_warnings};
 pub use pipeline::{DemReading, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, friction, prepare, sha256_of};
 pub use plan::{Defect, PlanError, PlanOptions, Planned, plan};

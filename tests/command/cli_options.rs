@@ -21,6 +21,7 @@ const COMMANDS: [&str; 19] = [
     "require",
     "trade",
     "compare",
+    "report",
     "simulate",
     "batch",
     "stance",
@@ -57,7 +58,8 @@ const ON_MISSING_DATA: [&str; 1] = ["--no-data"];
 /// An option, a command line without it, and one with it.
 type Trial = (&'static str, &'static [&'static str], &'static [&'static str]);
 
-const RUN: [Trial; 6] = [
+const RUN: [Trial; 7] = [
+    ("--report", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--report", "out/page.html"]),
     ("--trajectory", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--trajectory", "t.csv"]),
     (
         "--step-s",
@@ -592,6 +594,11 @@ const PLAN: [Trial; 26] = [
         &["plan", "scenario.toml", "--clearance-m", "50", "--set", "hopper.clearance_taper=9"],
     ),
     ("--quiet", &["plan", "scenario.toml", "--body", "bennu"], &["plan", "scenario.toml", "--body", "bennu", "--quiet"]),
+];
+
+const REPORT: [Trial; 2] = [
+    ("--output", &["report", "other_path.json", "-o", "page.html"], &["report", "other_path.json", "-o", "elsewhere.html"]),
+    ("--quiet", &["report", "other_path.json", "-o", "page.html"], &["report", "other_path.json", "-o", "page.html", "--quiet"]),
 ];
 
 const MAN: [Trial; 1] = [("--output", &["man", "-o", "pages"], &["man", "-o", "elsewhere"])];
@@ -1442,6 +1449,7 @@ fn every_option_changes_the_output() {
         ("require", &REQUIRE),
         ("trade", &TRADE),
         ("compare", &COMPARE),
+        ("report", &REPORT),
         ("simulate", &SIMULATE),
         ("batch", &BATCH),
         ("stance", &STANCE),
@@ -1578,6 +1586,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 "--mobility",
                 "--paths",
                 "--profiles",
+                "--report",
                 "--trajectory",
             ]
             .contains(&name.as_str());
@@ -1611,6 +1620,9 @@ fn every_example_runs() {
         let desk = desk();
         if data.exists() {
             std::os::unix::fs::symlink(&data, desk.path().join("data")).unwrap();
+        }
+        if command == "report" {
+            assert_eq!(desk.run(&["run", "scenario.toml", "-o", "out"]).status, 0);
         }
         let ran = desk.run(&words.iter().map(String::as_str).collect::<Vec<_>>());
         assert!(ran.status < 2 && !ran.stderr.contains("error"), "chta {}: {ran:?}", words.join(" "));

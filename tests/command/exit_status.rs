@@ -41,6 +41,7 @@ const CASES: [Case; 20] = [
         &["compare", "scenario.toml", "slippery.toml"],
         Some(&["compare", "scenario.toml", "slippery.toml", "--require-all"]),
     ),
+    ("report", &["report", "result.json", "-o", "page.html"], None),
     ("simulate", &["simulate", "trials.toml"], Some(&["simulate", "slippery.toml"])),
     ("batch", &["batch", "cases.csv", "--scenario", "scenario.toml", "-o", "parts"], None),
     (
@@ -74,6 +75,7 @@ fn every_command_ends_with_the_status_of_the_documents() {
         desk.write_legs("four_legs.toml", FOUR_LEGS);
         desk.write("cases.csv", "hopper.takeoff_speed_max_m_s\n6\n-1\n");
         desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
+        desk.write("result.json", desk.json(&["plan", "scenario.toml"]).to_string());
         for (status, words) in [(0, Some(yes)), (1, no)] {
             let Some(words) = words else { continue };
             let ran = desk.run(words);
@@ -81,7 +83,8 @@ fn every_command_ends_with_the_status_of_the_documents() {
         }
         // Bad input: an option that no command has, and where there is an input, one that is absent.
         let mut bad = vec![[yes, &["--no-such-option"]].concat()];
-        if let Some(at) = yes.iter().position(|word| [".toml", ".tif"].iter().any(|end| word.ends_with(end)) && *word != "new.tif")
+        if let Some(at) =
+            yes.iter().position(|word| [".toml", ".tif", ".json"].iter().any(|end| word.ends_with(end)) && *word != "new.tif")
         {
             let mut absent = yes.to_vec();
             absent[at] = "absent.toml";

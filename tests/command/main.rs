@@ -45,6 +45,7 @@ mod picture_files;
 mod pipes;
 mod propulsion;
 mod real_terrain;
+mod report;
 mod same_answers;
 mod schemas;
 mod sentences;

@@ -68,6 +68,8 @@ mod mutations_overlays;
 mod mutations_scenario;
 mod mutations_terrain;
 mod new_limit;
+#[cfg(feature = "plot")]
+mod page;
 mod paper;
 mod pds3;
 mod planner;

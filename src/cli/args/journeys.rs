@@ -37,6 +37,9 @@ pub(crate) struct RunArgs {
     /// Folder for the results, created if it does not exist
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
+    /// Page (HTML) to write of the answer, as `chta report` makes it: one file with figures, tables and the documents
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) trajectory: TrajectoryArgs,
     #[command(flatten)]
@@ -47,6 +50,26 @@ pub(crate) struct RunArgs {
     /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged
     #[arg(long)]
     pub(crate) accept_map_scale: bool,
+    /// Most GiB read from a pipe, and from a text or mesh that is read whole
+    #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
+    pub(crate) input_max_gib: f64,
+    /// No warnings and no progress on standard error
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// Make a page of an answer: one HTML file with profile, map, 3-D ground, tables and provenance, which loads nothing else
+///
+/// The page holds the documents unchanged and the ground of their inputs, whose checksums have to be those of the documents.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta report out/result.json -o out/report.html")]
+pub(crate) struct ReportArgs {
+    /// Results (JSON) of one scenario: one with a path (run, plan, simulate), and beside it trials, a trade, or the sensitivity to errors
+    #[arg(value_name = "RESULT", required = true)]
+    pub(crate) results: Vec<PathBuf>,
+    /// Page (HTML) to write; -: standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
     /// Most GiB read from a pipe, and from a text or mesh that is read whole
     #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
     pub(crate) input_max_gib: f64,

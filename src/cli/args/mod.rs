@@ -24,7 +24,7 @@ use super::{
 pub(crate) use arena::ArenaArgs;
 pub(crate) use batch::BatchArgs;
 pub(crate) use journeys::{
-    CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
+    CheckArgs, CompareArgs, HopArgs, PlanArgs, ReportArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
 };
 pub(crate) use maps::{FanArgs, MapArgs, NodeSpacing};
 pub(crate) use position::{Position, place};
@@ -64,6 +64,7 @@ pub(crate) enum Command {
     Trade(TradeArgs),
     Compare(CompareArgs),
     Batch(BatchArgs),
+    Report(ReportArgs),
     Stance(Box<StanceArgs>),
     Arena(Box<ArenaArgs>),
     Synth(Box<SynthArgs>),

@@ -20,6 +20,7 @@ mod plan_legs;
 mod plan_over_mesh;
 mod plan_targets;
 mod plan_travel;
+pub(super) mod report;
 pub(super) mod require;
 pub(super) mod run;
 mod run_legs;

@@ -17,6 +17,7 @@ use crate::cli::{
     landings::Listener,
     load::{EndOptions, load_mesh_scenario, load_scenario},
     output,
+    page::PageInput,
     progress::Progress,
     run_folder::RunFolder,
     threads,
@@ -42,8 +43,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     if loaded.case.scenario.mission.is_some() {
         return run_targets::run(args, &loaded);
     }
-    output::check_folder(&args.output)?;
-    let mut folder = RunFolder::new(&args.output, args.trajectory.trajectory.as_deref())?;
+    let mut folder = RunFolder::begin(args)?;
     let in_time = TrajectoryFile::begin(&args.trajectory)?;
     let options = PlanOptions { verify: true, estimate: true, ..PlanOptions::default() };
     let planned = Arc::new(plan(&loaded.case, options, &Progress::new(args.quiet))?);
@@ -58,7 +58,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         folder.trials(&simulated, &loaded)?;
         trials_text = simulated.answer.simulation.as_ref().map(|record| format!("\n{}", record.text())).unwrap_or_default();
     }
-    let written = folder.write()?;
+    let written = folder.write(PageInput::Case(&loaded))?;
     let text = || format!("{}{trials_text}\n{written}\n", plan_text(&planned.answer, further_means()));
     show(args.answer.format, text, || loaded.document(DocumentKind::Run, &planned.warnings, &planned.answer))?;
     Ok(Answer::of(planned.is_traversable()))

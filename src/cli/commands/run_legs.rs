@@ -6,15 +6,14 @@ use chta::{
 };
 
 use crate::cli::{
-    Answer, Failure, args::RunArgs, load::MeshPlanInput, not_on_mesh, output, progress::Progress, run_folder::RunFolder,
-    views::show,
+    Answer, Failure, args::RunArgs, load::MeshPlanInput, not_on_mesh, output, page::PageInput, progress::Progress,
+    run_folder::RunFolder, views::show,
 };
 
 /// Plans a route of a robot with legs, makes its trials, and writes the results into a folder.
 pub(super) fn run(args: &RunArgs, input: &MeshPlanInput) -> Result<Answer, Failure> {
     not_on_mesh::refuse_for_legs(&[("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile")])?;
-    output::check_folder(&args.output)?;
-    let mut folder = RunFolder::new(&args.output, None)?;
+    let mut folder = RunFolder::begin(args)?;
     let progress = Progress::new(args.quiet);
     let question = LegsRouteQuestion { scenario: &input.scenario, base: &input.base };
     let routed = legs_route(question, &progress).map_err(|error| Failure::about(&input.mesh, &error))?;
@@ -30,7 +29,7 @@ pub(super) fn run(args: &RunArgs, input: &MeshPlanInput) -> Result<Answer, Failu
     }
     drop(progress);
     output::warn_all(args.quiet, &warnings);
-    let written = folder.write()?;
+    let written = folder.write(PageInput::Facets(input))?;
     let document = || Ok(input.document_on_map(DocumentKind::PlanLegs, crs.as_ref(), &warnings, &answer)?);
     show(args.answer.format, || format!("{text}\n{written}\n"), document)?;
     Ok(Answer::of(answer.plan.is_traversable()))

@@ -6,8 +6,8 @@ use chta::{
 };
 
 use crate::cli::{
-    Answer, Failure, args::RunArgs, load::MeshPlanInput, not_on_mesh, output, progress::Progress, run_folder::RunFolder,
-    views::show,
+    Answer, Failure, args::RunArgs, load::MeshPlanInput, not_on_mesh, output, page::PageInput, progress::Progress,
+    run_folder::RunFolder, views::show,
 };
 
 /// Plans a free route over a mesh, flies its trials, and writes the results into a folder.
@@ -16,8 +16,7 @@ pub(super) fn run(args: &RunArgs, input: &MeshPlanInput) -> Result<Answer, Failu
         return super::run_legs::run(args, input);
     }
     not_on_mesh::refuse(&[("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile")])?;
-    output::check_folder(&args.output)?;
-    let mut folder = RunFolder::new(&args.output, None)?;
+    let mut folder = RunFolder::begin(args)?;
     let about = |error: &dyn std::error::Error| Failure::message(format!("{}: {error}", input.mesh.display()));
     let progress = Progress::new(args.quiet);
     let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: None, roadmap: None };
@@ -34,7 +33,7 @@ pub(super) fn run(args: &RunArgs, input: &MeshPlanInput) -> Result<Answer, Failu
     }
     drop(progress);
     output::warn_all(args.quiet, &warnings);
-    let written = folder.write()?;
+    let written = folder.write(PageInput::Facets(input))?;
     let text = || format!("{}{trials_text}\n{written}\n", mesh_plan_text(&answer));
     show(args.answer.format, text, || Ok(input.document(DocumentKind::RunMesh, &warnings, &answer)?))?;
     Ok(Answer::of(answer.is_traversable()))

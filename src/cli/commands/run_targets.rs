@@ -6,14 +6,13 @@ use chta::{
 };
 
 use crate::cli::{
-    Answer, Failure, args::RunArgs, hints::further_means, load::Loaded, output, progress::Progress, run_folder::RunFolder,
-    trajectory::TrajectoryFile, views::show,
+    Answer, Failure, args::RunArgs, hints::further_means, load::Loaded, output, page::PageInput, progress::Progress,
+    run_folder::RunFolder, trajectory::TrajectoryFile, views::show,
 };
 
 /// Plans a mission over targets, makes its trials, and writes the results into a folder.
 pub(super) fn run(args: &RunArgs, loaded: &Loaded) -> Result<Answer, Failure> {
-    output::check_folder(&args.output)?;
-    let mut folder = RunFolder::new(&args.output, args.trajectory.trajectory.as_deref())?;
+    let mut folder = RunFolder::begin(args)?;
     let in_time = TrajectoryFile::begin(&args.trajectory)?;
     let progress = Progress::new(args.quiet);
     let planned = targets_plan(&loaded.case, &progress)?;
@@ -29,7 +28,7 @@ pub(super) fn run(args: &RunArgs, loaded: &Loaded) -> Result<Answer, Failure> {
     }
     drop(progress);
     output::warn_all(args.quiet, &warnings);
-    let written = folder.write()?;
+    let written = folder.write(PageInput::Case(loaded))?;
     show(args.answer.format, || format!("{text}\n{written}\n"), || loaded.document(DocumentKind::PlanTargets, &warnings, &answer))?;
     Ok(Answer::of(answer.is_traversable()))
 }

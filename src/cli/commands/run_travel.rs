@@ -6,14 +6,14 @@ use chta::{
 };
 
 use crate::cli::{
-    Answer, Failure, args::RunArgs, load::Loaded, not_for_travel, output, progress::Progress, run_folder::RunFolder, views::show,
+    Answer, Failure, args::RunArgs, load::Loaded, not_for_travel, output, page::PageInput, progress::Progress,
+    run_folder::RunFolder, views::show,
 };
 
 /// Plans a mission that drives, makes its trials, and writes the results into a folder.
 pub(super) fn run(args: &RunArgs, loaded: &Loaded) -> Result<Answer, Failure> {
     not_for_travel::refuse(&[("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile")])?;
-    output::check_folder(&args.output)?;
-    let mut folder = RunFolder::new(&args.output, None)?;
+    let mut folder = RunFolder::begin(args)?;
     let progress = Progress::new(args.quiet);
     let planned = travel_plan(&loaded.case, TravelOptions { alternatives: true, front: None }, &progress)?;
     let (answer, mut warnings) = (planned.answer.clone(), planned.warnings.clone());
@@ -27,7 +27,7 @@ pub(super) fn run(args: &RunArgs, loaded: &Loaded) -> Result<Answer, Failure> {
     }
     drop(progress);
     output::warn_all(args.quiet, &warnings);
-    let written = folder.write()?;
+    let written = folder.write(PageInput::Case(loaded))?;
     show(args.answer.format, || format!("{text}\n{written}\n"), || loaded.document(DocumentKind::PlanTravel, &warnings, &answer))?;
     Ok(Answer::of(answer.is_traversable()))
 }
