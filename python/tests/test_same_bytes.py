@@ -55,7 +55,7 @@ def test_checks_and_hops(path: str) -> None:
 
 
 def test_runs() -> None:
-    for path in ("data/scenarios/simple.toml", "data/scenarios/wall.toml", "data/mesh_scenarios/cave.toml"):
+    for path in ("data/scenarios/simple.toml", "data/scenarios/wall.toml", "data/mesh_scenarios/cave.toml", "data/mesh_scenarios/three_legs.toml"):
         with tempfile.TemporaryDirectory() as folder:
             same(("run", path, "-o", folder), lambda: chta.run(path))
             ran = chta.run(path, set={"uncertainty.trials": 40})

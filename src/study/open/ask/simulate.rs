@@ -88,7 +88,7 @@ impl Draft {
     /// [`AskError`]. That there is no path is an answer.
     pub fn run(&self, progress: &dyn Progress) -> Result<Ran, AskError> {
         if let Some(open) = self.facets(Purpose::Run)? {
-            return run_over_mesh(&open, progress);
+            return if open.is_of_legs() { run_of_legs(&open, progress) } else { run_over_mesh(&open, progress) };
         }
         let options = SimulateOptions::default();
         let open = self.case(Purpose::Run)?;
@@ -210,4 +210,20 @@ fn run_over_mesh(open: &OpenFacets, progress: &dyn Progress) -> Result<Ran, AskE
     let kind = DocumentKind::RunMesh;
     let plan = Reply::new(kind, open.document(kind, &warnings, answer)?, holds);
     Ok(Ran { plan, trials: trials.map(|json| Reply::new(DocumentKind::SimulateMesh, json, holds)) })
+}
+
+/// A path of a robot with legs, and its trials.
+fn run_of_legs(open: &OpenFacets, progress: &dyn Progress) -> Result<Ran, AskError> {
+    let routed = legs_route(LegsRouteQuestion { scenario: &open.scenario, base: &open.base }, progress)?;
+    let (answer, crs, mut warnings) = (routed.answer.clone(), routed.crs(), routed.warnings.clone());
+    let (holds, mut trials) = (answer.plan.is_traversable(), None);
+    if open.scenario.uncertainty.is_some() && routed.path.is_some() {
+        let flown = simulate_legs(routed, &open.scenario, &SimulateOptions::default(), progress)?;
+        warnings.clone_from(&flown.warnings);
+        let kind = DocumentKind::SimulateLegs;
+        trials = Some(Reply::new(kind, open.document_on_map(kind, crs.as_ref(), &flown.warnings, &flown.answer)?, holds));
+    }
+    let kind = DocumentKind::PlanLegs;
+    let plan = Reply::new(kind, open.document_on_map(kind, crs.as_ref(), &warnings, &answer)?, holds);
+    Ok(Ran { plan, trials })
 }
