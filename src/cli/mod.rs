@@ -4,6 +4,7 @@ mod args;
 mod claims;
 mod commands;
 mod compared;
+mod density;
 mod effects;
 mod failure;
 mod fan_outputs;
