@@ -134,7 +134,7 @@ fn costs_are_refused_by_name_where_nothing_counts_them() {
     // What costs an unknown amount is refused under the layer's name; a negative value when the raster is read.
     desk.write("gap.asc", "ncols 2\nnrows 2\nxllcorner -1\nyllcorner -1\ncellsize 10\n1 1\n1 1\n");
     let gap = desk.run(&["plan", "goal.toml", "--set", "layer.hazard={ raster = \"gap.asc\", cost_per_contact = 1 }"]);
-    assert!(gap.status == 1 && gap.stdout.contains("layer:hazard"), "{}{}", gap.stdout, gap.stderr);
+    assert!(gap.status == 1 && gap.stderr.contains("layer hazard does not hold at the goal"), "{}{}", gap.stdout, gap.stderr);
     desk.write("less.asc", "ncols 2\nnrows 2\nxllcorner -1\nyllcorner -1\ncellsize 25\n-1 1\n1 1\n");
     let less = desk.run(&["plan", "goal.toml", "--set", "layer.hazard={ raster = \"less.asc\", cost_per_contact = 1 }"]);
     assert!(less.status == 2 && less.stderr.contains("row 1, column 1 has -1"), "{}", less.stderr);
