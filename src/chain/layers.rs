@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::{
     quantity::{ChainPoint, MapPoint},
-    terrain::{Layer, LayerRule, MapLayers},
+    terrain::{Layer, MapLayers, Touch},
     world::LayerName,
 };
 
@@ -35,12 +35,12 @@ impl PartialEq for ChainLayers {
 impl ChainLayers {
     /// The layers under a chain of these vertices, of which each has a place on the map.
     pub(crate) fn under(layers: &MapLayers, vertices: &[ChainPoint], map: &[MapPoint]) -> Self {
-        let of = |counts: fn(&LayerRule) -> bool| {
-            let counted = layers.iter().filter(|layer| layer.rule().outage.is_none() && counts(layer.rule()));
-            let refused = counted.map(|layer| Refused { layer: layer.rule().name, stretches: stretches(layer, vertices, map) });
+        let of = |touch: Touch| {
+            let stretches = |layer: &Layer| stretches((layer, touch), vertices, map);
+            let refused = layers.refusing_any(touch).map(|layer| Refused { layer: layer.rule().name, stretches: stretches(layer) });
             refused.filter(|refused| !refused.stretches.is_empty()).collect()
         };
-        Self { map: layers.clone(), contacts: of(|rule| rule.on_contact), flights: of(|rule| rule.on_flight) }
+        Self { map: layers.clone(), contacts: of(Touch::Contact), flights: of(Touch::Flight) }
     }
 
     /// The layers of the map.
@@ -88,15 +88,15 @@ fn refusing(layers: &[Refused], low_m: f64, high_m: f64) -> Option<LayerName> {
     layers.iter().find(meets).map(|refused| refused.layer)
 }
 
-/// The stretches of a chain where a layer does not hold.
-fn stretches(layer: &Layer, vertices: &[ChainPoint], map: &[MapPoint]) -> Vec<[f64; 2]> {
+/// The stretches of a chain where a layer refuses to be touched.
+fn stretches((layer, touch): (&Layer, Touch), vertices: &[ChainPoint], map: &[MapPoint]) -> Vec<[f64; 2]> {
     let mut found: Vec<[f64; 2]> = Vec::new();
     for (ends, places) in vertices.windows(2).zip(map.windows(2)) {
         let ([begin, end], [from, to]) = (ends, places) else { continue };
         let run_m = end.x_m - begin.x_m;
         // The ends of a segment are those of the chain itself, without rounding.
         let at = |share: f64| if share == 1.0 { end.x_m } else { begin.x_m + share * run_m };
-        found.extend(layer.refused_shares(*from, *to).into_iter().map(|(low, high)| [at(low), at(high)]));
+        found.extend(layer.refused_shares(touch, *from, *to).into_iter().map(|(low, high)| [at(low), at(high)]));
     }
     found.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut joined: Vec<[f64; 2]> = Vec::with_capacity(found.len());

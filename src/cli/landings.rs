@@ -12,7 +12,7 @@ use chta::{
     },
     study::{Simulated, Trials},
     terrain::MapProjection,
-    uncertainty::{HopRecord, Observer, Policy},
+    uncertainty::{HopRecord, Observer, Policy, RestDensity, TrialRecord},
 };
 
 use super::{Failure, load::Loaded, output::Pending, progress::Progress};
@@ -110,15 +110,21 @@ fn parquet<'a>(
 /// Writes landings as they are flown, and tells the progress which policy is flown.
 pub(crate) struct Listener<'a> {
     rows: Option<RowFile<'a>>,
+    density: Option<&'a mut RestDensity>,
     policy: Policy,
     failed: Option<io::Error>,
     progress: &'a Progress,
 }
 
 impl<'a> Listener<'a> {
-    /// Flies trials, and writes their landings.
-    pub(crate) fn fly(trials: Trials, rows: Option<RowFile<'a>>, progress: &'a Progress) -> Result<Simulated, Failure> {
-        let mut listener = Self { rows, policy: Policy::OpenLoop, failed: None, progress };
+    /// Flies trials, writes their landings and counts where they rest.
+    pub(crate) fn fly(
+        trials: Trials,
+        rows: Option<RowFile<'a>>,
+        density: Option<&'a mut RestDensity>,
+        progress: &'a Progress,
+    ) -> Result<Simulated, Failure> {
+        let mut listener = Self { rows, density, policy: Policy::OpenLoop, failed: None, progress };
         let flown = trials.fly(&mut listener, progress);
         // A write error replaces the error of the trials that it stopped.
         if let Some(error) = listener.failed {
@@ -132,7 +138,7 @@ impl<'a> Listener<'a> {
 
 impl Observer for Listener<'_> {
     fn wants_records(&self) -> bool {
-        self.rows.is_some()
+        self.rows.is_some() || self.density.is_some()
     }
 
     fn begin(&mut self, policy: Policy) {
@@ -140,7 +146,16 @@ impl Observer for Listener<'_> {
         self.progress.begin_trials(policy);
     }
 
+    fn trial(&mut self, trial: &TrialRecord) {
+        if let Some(density) = &mut self.density {
+            density.trial(trial);
+        }
+    }
+
     fn hop(&mut self, hop: &HopRecord) {
+        if let Some(density) = &mut self.density {
+            density.hop(hop);
+        }
         let Some(rows) = self.rows.as_mut().filter(|_| self.failed.is_none()) else { return };
         if let Some(row) = LandingRow::new(hop, self.policy, rows.known != MapKnowledge::Nothing, rows.projection.as_ref())
             && let Err(error) = rows.writer.write(&row)

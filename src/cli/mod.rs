@@ -5,6 +5,7 @@ mod batch_folder;
 mod claims;
 mod commands;
 mod compared;
+mod density;
 mod effects;
 mod failure;
 mod fan_outputs;

@@ -43,7 +43,7 @@ pub(crate) use posts::{Offset, OverlayTable};
 #[cfg(test)]
 pub(crate) use posts::{OffsetTable, Spacing};
 // A raw fact of a ground: the independent checker reads its cells.
-pub(crate) use crate::terrain::Layer;
+pub(crate) use crate::terrain::{Layer, MapLayers};
 pub use stance::{
     FootPush, Foothold, JointReach, LimbOutcome, NoFriction, NoStance, Pose, Stance, StanceBuffers, StanceGround, StanceMap,
     StandsUp, TrunkHit,

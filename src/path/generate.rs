@@ -8,8 +8,9 @@ use crate::{
     graph::{Edge, Leg},
     ground::{ChainGround, ChainPosition, DemGround, Surface, heading_of},
     hop::{HopMargins, HopTest, SegmentHops, Split},
-    planner::{Amount, Amounts},
+    planner::{Amount, Amounts, LayerTotals},
     quantity::{Angle, AngleInterval, SlopeInterval},
+    terrain::MapLayers,
     world::{Contact, Direction, Hopper, Limit},
 };
 
@@ -84,7 +85,11 @@ pub fn generate_over(
         }
         other => other?,
     };
-    Ok(HopPath::of_hops(hops, test.hopper()))
+    let path = HopPath::of_hops(hops, test.hopper());
+    Ok(match test.chain().geometry().layers() {
+        Some(layers) => path.with_costs_of(layers.map()),
+        None => path,
+    })
 }
 
 /// The hops of a path with exact commands.
@@ -118,6 +123,15 @@ impl HopPath {
 }
 
 impl HopPath {
+    /// The same with what the layers of a map cost.
+    #[must_use]
+    pub fn with_costs_of(mut self, layers: &MapLayers) -> Self {
+        let ends = self.hops.iter().filter_map(Hop::map_ends);
+        let costs = ends.flat_map(|(from, to)| layers.costs_of_hop(from, to));
+        self.totals.layers = costs.fold(LayerTotals::NONE, |sums, (layer, cost)| sums.then(&LayerTotals::NONE.with(layer, cost)));
+        self
+    }
+
     /// What the path takes: the totals, with the number of hops, the sum of take-off speeds and the length of the arcs. Risk is 0.
     #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
     pub fn amounts(&self) -> Amounts {
@@ -135,6 +149,7 @@ impl HopPath {
             .with(Amount::Distance, totals.ground_distance_m)
             .with(Amount::ArcLength, sum(&|hop| arc(hop).length_m()))
             .with(Amount::PeakSpeed, totals.peak_takeoff_speed_m_s)
+            .with_layers(totals.layers)
     }
 }
 
@@ -285,5 +300,6 @@ fn totals(hops: &[Hop], hopper: &Hopper) -> Totals {
         propellant_max_kg: limits.propellant_max_kg,
         propulsive: limits.is_propulsive(),
         of_store: limits.counts_store_energy(),
+        layers: LayerTotals::NONE,
     }
 }

@@ -5,6 +5,7 @@ use crate::{
     graph::Effort,
     ground::ContactPoint,
     hop::HopMargins,
+    planner::LayerTotals,
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint, VertexId},
     world::{Direction, Limit},
 };
@@ -195,6 +196,8 @@ pub struct Totals {
     pub propulsive: bool,
     /// Whether the energies are more than those of motion.
     pub of_store: bool,
+    /// What the layers of the map cost that have a cost.
+    pub layers: LayerTotals,
 }
 
 impl Totals {

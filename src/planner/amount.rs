@@ -1,8 +1,14 @@
 //! What a path takes: amounts that add up over its hops, and one that is the greatest of them.
 
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+use super::LayerTotals;
 use crate::{
     ballistics::{Arc, delta_v_m_s},
-    world::HopperLimits,
+    world::{HopperLimits, LayerName},
 };
 
 /// An amount of a path.
@@ -28,13 +34,15 @@ pub enum Amount {
     Risk,
     /// The greatest take-off speed, m/s.
     PeakSpeed,
+    /// What a layer of the map costs, at landings and under flights, in its own unit.
+    Layer(LayerName),
 }
 
 impl Amount {
-    /// The number of amounts.
+    /// The number of amounts that every path has.
     pub const COUNT: usize = 10;
 
-    /// All amounts.
+    /// All amounts that every path has: all but those of layers, which have any names.
     pub const ALL: [Self; Self::COUNT] = [
         Self::Hops,
         Self::TakeoffSpeed,
@@ -61,13 +69,33 @@ impl Amount {
             Self::ArcLength => "arc-length",
             Self::Risk => "risk",
             Self::PeakSpeed => "peak-speed",
+            Self::Layer(layer) => layer.as_limit(),
         }
     }
 
-    /// The symbol of its unit; empty for a count and for risk.
+    /// The amount with a name; `None` for any other text.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{planner::Amount, world::LayerName};
+    /// assert_eq!(Amount::named("energy"), Some(Amount::Energy));
+    /// assert_eq!(Amount::named("layer:hazard"), LayerName::new("hazard").map(Amount::Layer));
+    /// assert_eq!(Amount::named("hazard"), None);
+    /// ```
+    pub fn named(name: &str) -> Option<Self> {
+        let of_layer = || name.strip_prefix(LayerName::PREFIX).and_then(LayerName::new).map(Self::Layer);
+        Self::ALL.into_iter().find(|amount| amount.name() == name).or_else(of_layer)
+    }
+
+    /// The names of all amounts, for messages.
+    pub fn all_names() -> String {
+        format!("{} and {}NAME of a layer with a cost", Self::ALL.map(Self::name).join(", "), LayerName::PREFIX)
+    }
+
+    /// The symbol of its unit; empty for a count, for risk and for a layer.
     pub const fn unit(self) -> &'static str {
         match self {
-            Self::Hops | Self::Risk => "",
+            Self::Hops | Self::Risk | Self::Layer(_) => "",
             Self::TakeoffSpeed | Self::DeltaV | Self::PeakSpeed => "m/s",
             Self::Energy => "J/kg",
             Self::FlightTime | Self::MissionTime => "s",
@@ -88,6 +116,7 @@ impl Amount {
             Self::ArcLength => "length of the arcs",
             Self::Risk => "risk",
             Self::PeakSpeed => "greatest take-off speed",
+            Self::Layer(layer) => layer.as_limit(),
         }
     }
 
@@ -98,7 +127,7 @@ impl Amount {
 
     /// Whether it is the same for every arc between two places.
     pub const fn is_of_places(self) -> bool {
-        matches!(self, Self::Hops | Self::Distance)
+        matches!(self, Self::Hops | Self::Distance | Self::Layer(_))
     }
 
     /// The amount of two parts of a path together.
@@ -107,7 +136,7 @@ impl Amount {
         if self.adds_up() { first + second } else { first.max(second) }
     }
 
-    /// That of one hop along an arc, as [`Amounts::of_arc`] gives it.
+    /// That of one hop along an arc, as [`Amounts::of_arc`] gives it: nothing of a layer, which depends on the places.
     pub fn of_arc(self, arc: &Arc, limits: &HopperLimits, is_first: bool) -> f64 {
         match self {
             Self::Hops => 1.0,
@@ -124,26 +153,83 @@ impl Amount {
             }
             Self::Distance => arc.line_of_sight().run_m(),
             Self::ArcLength => arc.length_m(),
-            Self::Risk => 0.0,
+            Self::Risk | Self::Layer(_) => 0.0,
         }
     }
 
-    const fn index(self) -> usize {
-        self as usize
+    /// The layer of which it is the cost.
+    pub const fn layer(self) -> Option<LayerName> {
+        if let Self::Layer(layer) = self { Some(layer) } else { None }
+    }
+
+    /// The place in [`ALL`](Self::ALL), or the layer.
+    #[inline]
+    pub(super) const fn place(self) -> Result<usize, LayerName> {
+        Ok(match self {
+            Self::Hops => 0,
+            Self::TakeoffSpeed => 1,
+            Self::DeltaV => 2,
+            Self::Energy => 3,
+            Self::FlightTime => 4,
+            Self::MissionTime => 5,
+            Self::Distance => 6,
+            Self::ArcLength => 7,
+            Self::Risk => 8,
+            Self::PeakSpeed => 9,
+            Self::Layer(layer) => return Err(layer),
+        })
     }
 }
 
-crate::quantity::by_name!(Amount, Amount::ALL);
+impl std::fmt::Display for Amount {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.pad(self.name())
+    }
+}
+
+impl Serialize for Amount {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for Amount {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = Cow::<str>::deserialize(deserializer)?;
+        Self::named(&text).ok_or_else(|| D::Error::custom(format!("found \"{text}\", expected one of {}", Self::all_names())))
+    }
+}
+
+impl JsonSchema for Amount {
+    fn schema_name() -> Cow<'static, str> {
+        "Amount".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "string", "anyOf": [{ "enum": Self::ALL.map(Self::name) }, { "pattern": LayerName::LIMIT_PATTERN }] })
+    }
+}
 
 /// All amounts of a hop, of a leg or of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Amounts([f64; Amount::COUNT]);
+pub struct Amounts {
+    /// By their places in [`Amount::ALL`].
+    own: [f64; Amount::COUNT],
+    layers: LayerTotals,
+}
 
 impl Amounts {
     /// Those of a path without hops.
-    pub const NONE: Self = Self([0.0; Amount::COUNT]);
+    pub const NONE: Self = Self { own: [0.0; Amount::COUNT], layers: LayerTotals::NONE };
 
-    /// Those of one hop along an arc, for a hopper. Risk is left at 0, and bounces are not counted.
+    /// One hop, and nothing else of it.
+    pub(super) const ONE_HOP: Self = {
+        let mut own = [0.0; Amount::COUNT];
+        own[0] = 1.0;
+        Self { own, ..Self::NONE }
+    };
+
+    /// Those of one hop along an arc, for a hopper. Risk and layers are left at 0, and bounces are not counted.
     ///
     /// ```text
     ///     hops = 1,   energy = (v_t^2 / 2) / efficiency + preparation energy / mass,
@@ -170,16 +256,31 @@ impl Amounts {
 
     /// One of them.
     #[inline]
-    pub const fn of(&self, amount: Amount) -> f64 {
-        self.0[amount.index()]
+    pub fn of(&self, amount: Amount) -> f64 {
+        amount.place().map_or_else(|layer| self.layers.of(layer).unwrap_or(0.0), |place| self.own[place])
     }
 
     /// The same with another value of one of them.
     #[must_use]
     #[inline]
-    pub const fn with(mut self, amount: Amount, value: f64) -> Self {
-        self.0[amount.index()] = value;
+    pub fn with(mut self, amount: Amount, value: f64) -> Self {
+        match amount.place() {
+            Ok(place) => self.own[place] = value,
+            Err(layer) => self.layers = self.layers.with(layer, value),
+        }
         self
+    }
+
+    /// The same with what layers cost.
+    #[must_use]
+    #[inline]
+    pub const fn with_layers(self, layers: LayerTotals) -> Self {
+        Self { layers, ..self }
+    }
+
+    /// What layers cost.
+    pub const fn layers(&self) -> &LayerTotals {
+        &self.layers
     }
 
     /// Those of a path of which these are the first part.
@@ -187,9 +288,9 @@ impl Amounts {
     pub fn then(&self, next: &Self) -> Self {
         let mut both = *self;
         for amount in Amount::ALL {
-            both.0[amount.index()] = amount.join(self.of(amount), next.of(amount));
+            both = both.with(amount, amount.join(self.of(amount), next.of(amount)));
         }
-        both
+        both.with_layers(self.layers.then(&next.layers))
     }
 
     /// Those of so many equal hops; of none at all, nothing.
@@ -198,8 +299,8 @@ impl Amounts {
     pub fn times(&self, hops: u64) -> Self {
         let mut all = *self;
         for amount in Amount::ALL.into_iter().filter(|amount| hops == 0 || amount.adds_up()) {
-            all.0[amount.index()] *= hops as f64;
+            all = all.with(amount, all.of(amount) * hops as f64);
         }
-        all
+        all.with_layers(self.layers.times(hops as f64))
     }
 }

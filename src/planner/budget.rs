@@ -1,12 +1,14 @@
 //! How much a path may take.
 
-use super::{Amount, Amounts};
+use super::{Amount, Amounts, LayerTotals};
 
 /// The greatest totals of a path, of any amounts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budgets {
     /// By amount; infinite: any.
     most: [f64; Amount::COUNT],
+    /// Of layers with a budget.
+    of_layers: LayerTotals,
 }
 
 /// A greatest total with the key that sets it.
@@ -14,10 +16,20 @@ pub struct Budgets {
 pub struct TotalBudget {
     /// Of which amount.
     pub amount: Amount,
-    /// The key, for messages.
+    /// The key, for messages; of a layer that in its table.
     pub key: &'static str,
     /// The greatest total, in the unit of the amount.
     pub most: f64,
+}
+
+impl TotalBudget {
+    /// The whole key, with the table that it stands in.
+    pub fn full_key(&self) -> String {
+        match self.amount {
+            Amount::Layer(layer) => format!("layer.{layer}.{}", self.key),
+            _ => self.key.to_owned(),
+        }
+    }
 }
 
 /// A greatest total that is no amount.
@@ -49,7 +61,7 @@ impl Default for Budgets {
 
 impl Budgets {
     /// No budgets.
-    pub const NONE: Self = Self { most: [f64::INFINITY; Amount::COUNT] };
+    pub const NONE: Self = Self { most: [f64::INFINITY; Amount::COUNT], of_layers: LayerTotals::NONE };
 
     /// A total may exceed its budget by this share, as a speed may exceed its limit: sums in another order differ by less.
     pub(super) const TOLERANCE: f64 = 1e-9;
@@ -71,14 +83,17 @@ impl Budgets {
         if most.is_nan() || most < 0.0 {
             return Err(BudgetProblem { amount, found: most });
         }
-        let known = &mut self.most[amount as usize];
-        *known = known.min(most);
+        let most = most.min(self.most(amount));
+        match amount.place() {
+            Ok(place) => self.most[place] = most,
+            Err(layer) => self.of_layers = self.of_layers.with(layer, most),
+        }
         Ok(self)
     }
 
     /// The greatest total of an amount; infinite without a budget.
-    pub const fn most(&self, amount: Amount) -> f64 {
-        self.most[amount as usize]
+    pub fn most(&self, amount: Amount) -> f64 {
+        amount.place().map_or_else(|layer| self.of_layers.of(layer).unwrap_or(f64::INFINITY), |place| self.most[place])
     }
 
     /// The total from which on an amount is too much.
@@ -88,7 +103,9 @@ impl Budgets {
 
     /// The amounts with a budget, and their greatest totals.
     pub fn all(&self) -> impl Iterator<Item = (Amount, f64)> + '_ {
-        Amount::ALL.into_iter().map(|amount| (amount, self.most(amount))).filter(|(_, most)| most.is_finite())
+        let own = Amount::ALL.into_iter().map(|amount| (amount, self.most(amount)));
+        let of_layers = self.of_layers.iter().map(|(layer, most)| (Amount::Layer(layer), most));
+        own.chain(of_layers).filter(|(_, most)| most.is_finite())
     }
 
     /// Whether there is no budget.

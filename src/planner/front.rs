@@ -24,10 +24,12 @@ pub fn front(
     paths.sort_by(|a, b| {
         a.totals.of(first).total_cmp(&b.totals.of(first)).then(a.totals.of(second).total_cmp(&b.totals.of(second)))
     });
+    /// Sums in another order differ by less: no more hops for a total that is the same.
+    const ROUNDING: f64 = 1.0 - 1e-12;
     // With a budget on a third amount the labels of the goal are a front of three.
     let mut least = f64::INFINITY;
     paths.retain(|path| {
-        let improves = path.totals.of(second) < least;
+        let improves = path.totals.of(second) < least * ROUNDING;
         least = least.min(path.totals.of(second));
         improves
     });

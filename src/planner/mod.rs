@@ -24,6 +24,7 @@ mod free_route;
 mod front;
 mod labels;
 mod lattice;
+mod layer_totals;
 mod nearest_steps;
 mod nodes;
 mod objective;
@@ -48,6 +49,7 @@ pub use free_route::{
 };
 pub use front::front;
 pub use lattice::{NODES_PER_POST_MOST, NodesPerPost, SurfaceLattice};
+pub use layer_totals::LayerTotals;
 pub use nodes::{SurfaceNode, SurfaceNodes, TooManyNodes};
 pub use objective::{Objective, ObjectiveProblem};
 pub use outage::{OutagePart, Stretch};
@@ -62,6 +64,8 @@ pub use travel::{
     travel, travel_field,
 };
 
+#[cfg(test)]
+mod layer_cost_tests;
 #[cfg(test)]
 mod outage_tests;
 #[cfg(test)]

@@ -11,7 +11,7 @@ pub struct Objective(Vec<Amount>);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ObjectiveProblem {
     /// An empty list.
-    #[error("the objective is empty, expected at least one of {}", all_names())]
+    #[error("the objective is empty, expected at least one of {}", Amount::all_names())]
     Empty,
     /// More amounts than are compared.
     #[error(
@@ -28,11 +28,6 @@ pub enum ObjectiveProblem {
     /// An amount that does not add up, before another one.
     #[error("the objective has {0} before another amount, expected it last: it is the greatest of all hops and does not add up")]
     NotLast(Amount),
-}
-
-/// The names of all amounts, with commas.
-fn all_names() -> String {
-    Amount::ALL.map(Amount::name).join(", ")
 }
 
 impl Objective {

@@ -46,11 +46,19 @@ fn layer(draw: &mut Draw, name: &str) -> Layer {
         on_contact: !on_flight || draw.chance(0.5),
         on_flight,
         outage: Some(limit),
+        cost: None,
     };
     read_layer(&file, rule, None).unwrap()
 }
 
 fn ground(draw: &mut Draw) -> DemGround {
+    let names = if draw.chance(0.3) { &["link", "sun"][..] } else { &["sun"][..] };
+    let layers = MapLayers::new(names.iter().map(|name| layer(draw, name)).collect());
+    ground_under(draw, &[layers]).remove(0)
+}
+
+/// The same small random map under each of some sets of layers.
+pub(super) fn ground_under(draw: &mut Draw, layers: &[MapLayers]) -> Vec<DemGround> {
     let relief_m = draw.log_uniform(0.1, 1.0);
     let heights = (0..SIDE * SIDE).map(|_| if draw.chance(0.04) { f64::NAN } else { draw.uniform(0.0, relief_m) }).collect();
     let dem = Dem::new(SIDE, SIDE, heights, GeoReference::local(MapPoint::new(3.0, 40.0), 1.0, 1.0).unwrap()).unwrap();
@@ -63,17 +71,19 @@ fn ground(draw: &mut Draw) -> DemGround {
         preparation_time_s: Some(PREPARATION_S),
         ..HopperLimits::with_speeds(2.2, 2.2)
     };
-    let names = if draw.chance(0.3) { &["link", "sun"][..] } else { &["sun"][..] };
-    let layers = MapLayers::new(names.iter().map(|name| layer(draw, name)).collect());
-    let overlays = Overlays::default().with_layers(layers);
-    DemGround::new(OverlaidDem::new(dem, overlays), &Hopper::new(times).unwrap(), Gravity::new(2.1).unwrap(), &surface)
+    let hopper = Hopper::new(times).unwrap();
+    let under = |layers: &MapLayers| {
+        let overlaid = OverlaidDem::new(dem.clone(), Overlays::default().with_layers(layers.clone()));
+        DemGround::new(overlaid, &hopper, Gravity::new(2.1).unwrap(), &surface)
+    };
+    layers.iter().map(under).collect()
 }
 
 /// All hops between nodes, with what they take: of the first hop of a mission, and of later ones.
-struct AllHops {
-    places: Vec<MapPoint>,
+pub(super) struct AllHops {
+    pub(super) places: Vec<MapPoint>,
     /// By node: the other node, and the amounts of the first hop and of a later one.
-    hops: Vec<Vec<(usize, [Amounts; 2])>>,
+    pub(super) hops: Vec<Vec<(usize, [Amounts; 2])>>,
 }
 
 /// Gathers the legs of a node.
@@ -87,7 +97,7 @@ impl LegVisitor for Gathered {
 }
 
 impl AllHops {
-    fn of(ground: &DemGround, nodes: &SurfaceNodes) -> Self {
+    pub(super) fn of(ground: &DemGround, nodes: &SurfaceNodes) -> Self {
         let surface = SurfaceHops::new(ground, nodes);
         let meter = Meter::new(&(), Stage::Search);
         let nowhere = MapPoint::new(-1e9, -1e9);
@@ -193,7 +203,7 @@ impl Tried<'_> {
 }
 
 /// A start and targets on posts of a ground, with its nodes; `None` where one of them has no elevation.
-fn stops(draw: &mut Draw, ground: &DemGround, count: usize) -> Option<(Vec<MapPoint>, SurfaceNodes)> {
+pub(super) fn stops(draw: &mut Draw, ground: &DemGround, count: usize) -> Option<(Vec<MapPoint>, SurfaceNodes)> {
     let mut post = || MapPoint::new(3.0 + f64::from(number(draw, SIDE)), 40.0 - f64::from(number(draw, SIDE)));
     let stops: Vec<MapPoint> = (0..count).map(|_| post()).collect();
     let differ = stops.iter().enumerate().all(|(number, at)| !stops[..number].contains(at));

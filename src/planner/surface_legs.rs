@@ -6,8 +6,8 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::{
-    Amount, Amounts, FoundPath, LeastAmounts, LegGraph, LegVisitor, OutagePart, PathStep, RoutePath, SearchedCommands, Successor,
-    SurfaceNode,
+    Amount, Amounts, FoundPath, LayerTotals, LeastAmounts, LegGraph, LegVisitor, OutagePart, PathStep, RoutePath, SearchedCommands,
+    Successor, SurfaceNode,
     fewest_hops::FewestHops,
     outage::Outages,
     pair_memo::PairMemo,
@@ -160,16 +160,28 @@ impl<'a> LegOffers<'a> {
     pub(super) fn each(&self, from: SurfaceNode, to: &MapPosition, hop: &Feasible, mut give: impl FnMut(u32, Amounts)) {
         let envelope = self.surface.ground.envelope();
         let limits = self.surface.ground.hopper().limits();
+        let layers = self.layers_between(from, to);
         let mut known = [f64::NAN; TakeoffChoice::ALL.len()];
         for ((command, (choice, judge)), number) in self.commands.iter().enumerate().zip(0..) {
             let loft = envelope.loft(*choice, hop.sight, hop.lofts);
             if !known[..command].contains(&loft) {
                 let arc = Arc::new(hop.sight, loft, envelope.gravity_m_s2());
                 let risk = judge.as_ref().map_or(0.0, |judge| judge.estimate(to, hop.heading, (hop.sight, hop.lofts)));
-                give(number, Amounts::of_arc(&arc, limits, self.settling.is_spared(from, to)).with(Amount::Risk, risk));
+                let of_arc = Amounts::of_arc(&arc, limits, self.settling.is_spared(from, to));
+                give(number, of_arc.with(Amount::Risk, risk).with_layers(layers));
             }
             known[command] = loft;
         }
+    }
+
+    /// What the layers of the map cost on a hop, whatever its command.
+    fn layers_between(&self, from: SurfaceNode, to: &MapPosition) -> LayerTotals {
+        let layers = self.surface.ground.layers();
+        if !layers.have_costs() {
+            return LayerTotals::NONE;
+        }
+        let Some(from) = self.surface.position(from) else { return LayerTotals::NONE };
+        layers.costs_of_hop(from.at, to.at).fold(LayerTotals::NONE, |totals, (layer, cost)| totals.with(layer, cost))
     }
 
     /// Visits every hop that begins at a node, or ends there, whose other end leads on, once for each of its distinct commands.
@@ -294,11 +306,10 @@ impl<'a> LegOffers<'a> {
         leads_on: &dyn Fn(SurfaceNode) -> bool,
         visitor: &mut dyn LegVisitor,
     ) -> Vec<Candidate> {
-        const ONE_HOP: Amounts = Amounts::NONE.with(Amount::Hops, 1.0);
         let mut candidates = Vec::new();
         for other in others.filter(|other| *other != node && leads_on(*other)) {
             // By the hops alone, which needs no ground.
-            if !visitor.may_improve(other.index(), &ONE_HOP) {
+            if !visitor.may_improve(other.index(), &Amounts::ONE_HOP) {
                 continue;
             }
             let Some(there) = self.surface.position(other) else { continue };

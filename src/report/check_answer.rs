@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    derating_record::DeratingRecord, hop_answer::BindingRecord, limit_counts::LimitCounts, objective_record::ObjectiveRecord,
-    outage_record::OutageRecord, proof_record::ProofRecord, propellant_record::PropellantShortage, route_record::RouteRecord,
-    success_record::SuccessBudgetRecord,
+    AmountRecord, derating_record::DeratingRecord, hop_answer::BindingRecord, limit_counts::LimitCounts,
+    objective_record::ObjectiveRecord, outage_record::OutageRecord, proof_record::ProofRecord,
+    propellant_record::PropellantShortage, route_record::RouteRecord, success_record::SuccessBudgetRecord,
 };
 use crate::{
     graph::{
@@ -68,6 +68,9 @@ pub struct CheckAnswer {
     /// `no-path-found`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub outages: Vec<OutageRecord>,
+    /// Of a free route under layers with a cost: what each costs the path, in its own unit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layer_costs: Vec<AmountRecord>,
     /// The shares of the limits that this answer, a proof and all margins are for; absent if they are for the whole limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derating: Option<DeratingRecord>,
@@ -224,6 +227,7 @@ impl CheckAnswer {
             success_budget: None,
             objective: None,
             outages: Vec::new(),
+            layer_costs: Vec::new(),
             derating: None,
             commands_refusal: None,
             landing_miss_max_m: None,
@@ -245,6 +249,7 @@ impl CheckAnswer {
     /// less, which the search, and a proof about hops, do not know.
     #[must_use]
     pub fn with_path(mut self, path: Option<&HopPath>) -> Self {
+        self.layer_costs = path.map_or_else(Vec::new, |path| AmountRecord::of_layers(&path.totals.layers));
         self.propellant_shortage = path.and_then(|path| PropellantShortage::of(&path.totals));
         let aims = path.into_iter().flat_map(|path| &path.hops).filter_map(|hop| hop.aim);
         self.landing_miss_max_m = aims.map(|aim| aim.distance_m()).reduce(f64::max);

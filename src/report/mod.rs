@@ -4,6 +4,7 @@ mod advice;
 mod arena_answer;
 mod check_answer;
 mod compare_answer;
+mod density_record;
 mod derating_record;
 mod document;
 mod experiment_answer;
@@ -61,6 +62,7 @@ pub use check_answer::{
     CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, JourneyEnd, MissRecord, PairsAnswer, verdict_of,
 };
 pub use compare_answer::{CompareAnswer, CompareRow, MarginsRecord};
+pub use density_record::DensityRecord;
 pub use derating_record::DeratingRecord;
 pub use document::{CrsRecord, Document, DocumentKind, DocumentProblem, InputFile};
 pub use experiment_answer::{ConeWidthAnswer, ConeWidthRecord, DriftRecord, ExperimentAnswer, WorstDriftAnswer};

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    planner::{Amount, Amounts, Budgets, Objective, TotalBudget, UnmetBudget},
+    planner::{Amount, Amounts, Budgets, LayerTotals, Objective, TotalBudget, UnmetBudget},
     quantity::format_number,
 };
 
@@ -30,6 +30,19 @@ pub struct AmountRecord {
     pub amount: Amount,
     /// The total, in `unit`.
     pub total: f64,
+}
+
+impl AmountRecord {
+    /// What the layers of the map cost a path.
+    pub fn of_layers(layers: &LayerTotals) -> Vec<Self> {
+        layers.iter().map(|(layer, total)| Self { amount: Amount::Layer(layer), total }).collect()
+    }
+
+    /// What text says of the costs of layers, where there are some.
+    pub fn layers_sentence(layers: &[Self]) -> Option<String> {
+        let costs: Vec<_> = layers.iter().map(|row| format!("{} {:.4}", row.amount, row.total)).collect();
+        (!costs.is_empty()).then(|| format!("costs of layers: {}", costs.join(", ")))
+    }
 }
 
 /// A greatest total.
@@ -64,7 +77,7 @@ impl ObjectiveRecord {
             let met = total.is_none_or(|total| keeps(budget.amount, total, budget.most));
             BudgetRecord {
                 amount: budget.amount,
-                key: budget.key.to_owned(),
+                key: budget.full_key(),
                 max: budget.most,
                 total,
                 met,

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AdviceRecord, CheckAnswer, FurtherMeans, HopRecord, check_text, text::Sheet};
+use super::{AdviceRecord, CheckAnswer, DensityRecord, FurtherMeans, HopRecord, check_text, text::Sheet};
 use crate::uncertainty::{
     ErrorSummary, LandingEllipse, LandingSummary, OutcomeCounts, Policy, RatePoint, Summary, TrialOutcome, Wilson,
 };
@@ -29,6 +29,9 @@ pub struct SimulateAnswer {
     /// After a success rate below 0.9: which keys of the scenario would help most, the first before the others.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub advice: Vec<AdviceRecord>,
+    /// Where the trials end on the map, if that was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<DensityRecord>,
 }
 
 /// A success rate that trials have to show.
@@ -101,6 +104,7 @@ pub fn simulate_text(answer: &SimulateAnswer, means: FurtherMeans<'_>) -> String
     let mut text = check_text(&answer.check, means);
     text.push_str(&records_text(answer.simulation.as_ref(), &answer.compare));
     text.push_str(&answer.advice_text());
+    text.push_str(&answer.density.as_ref().map(DensityRecord::text).unwrap_or_default());
     text.push_str(&requirement_text(answer.requirement, answer.simulation.as_ref()));
     text
 }

@@ -28,6 +28,9 @@ pub struct FrontRecord {
     /// Of a front against it: the length of the arcs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arc_length_m: Option<f64>,
+    /// Of a front against the cost of a layer: that cost, in the unit of the layer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layer_total: Option<f64>,
     /// Its totals.
     #[serde(flatten)]
     pub totals: TotalsRecord,
@@ -73,6 +76,7 @@ impl FrontRecord {
             Amount::ArcLength => self.arc_length_m.unwrap_or(f64::NAN),
             Amount::Risk => f64::NAN,
             Amount::PeakSpeed => self.totals.peak_takeoff_speed_m_s,
+            Amount::Layer(_) => self.layer_total.unwrap_or(f64::NAN),
         }
     }
 }
@@ -97,7 +101,10 @@ pub fn amount_front_text(rows: &[FrontRecord], of: &FrontSearchRecord) -> String
         return sheet.into_text();
     }
     let shown = [Amount::FlightTime, Amount::Energy, Amount::PeakSpeed].map(|other| (other, other != amount));
-    let heading = |amount: Amount| format!("{amount} ({})", amount.unit());
+    let heading = |amount: Amount| match amount.unit() {
+        "" => amount.to_string(),
+        unit => format!("{amount} ({unit})"),
+    };
     let mut heads = format!("{:>6}{:>22}", "hops", heading(amount));
     for (other, _) in shown.iter().filter(|(_, is_shown)| *is_shown) {
         let _ = write!(heads, "{:>20}", heading(*other));

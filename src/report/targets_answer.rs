@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    DeratingRecord, HopRecord, MapKnowledge, ObjectiveRecord, OutageRecord, PropellantShortage, RouteGapRecord, SimulationRecord,
-    SuccessRequirement, TotalsRecord, write_path_csv,
+    AmountRecord, DeratingRecord, HopRecord, MapKnowledge, ObjectiveRecord, OutageRecord, PropellantShortage, RouteGapRecord,
+    SimulationRecord, SuccessRequirement, TotalsRecord, write_path_csv,
 };
 use crate::{
     graph::proof::ProofVerdict,
@@ -42,6 +42,9 @@ pub struct TargetsAnswer {
     /// `no-path-found`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub outages: Vec<OutageRecord>,
+    /// Under layers with a cost: what each costs the whole mission, in its own unit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layer_costs: Vec<AmountRecord>,
     /// The shares of the limits that this answer and all margins are for; absent if they are for the whole limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derating: Option<DeratingRecord>,

@@ -1,7 +1,8 @@
 //! The answers about several targets, as text.
 
 use super::{
-    FurtherMeans, LeftOutRecord, OverBudgetRecord, TargetsAnswer, TargetsSimulateAnswer, TripRecord, VisitRecord, WhyRecord,
+    AmountRecord, FurtherMeans, LeftOutRecord, OverBudgetRecord, TargetsAnswer, TargetsSimulateAnswer, TripRecord, VisitRecord,
+    WhyRecord,
     mesh_plan_answer::point,
     objective_record::with_unit,
     simulate_answer::{records_text, requirement_text},
@@ -39,6 +40,9 @@ pub fn targets_text(answer: &TargetsAnswer, means: FurtherMeans<'_>) -> String {
     }
     for outage in &answer.outages {
         sheet.line(format_args!("{}", outage.sentence()));
+    }
+    if let Some(costs) = AmountRecord::layers_sentence(&answer.layer_costs) {
+        sheet.line(format_args!("{costs}"));
     }
     let search = &answer.search;
     sheet.line(format_args!(

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::{
-    BestRecord, BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ObjectiveRecord, OutageRecord, ProofRecord,
-    TotalsRecord, WindowRecord,
+    AmountRecord, BestRecord, BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ObjectiveRecord,
+    OutageRecord, ProofRecord, TotalsRecord, WindowRecord,
     limit_counts::LimitCounts,
     propellant_record::{delta_v_field, stores_lines},
 };
@@ -277,7 +277,10 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         sheet.line(format_args!("{}", budget.sentence()));
     }
     let of_objective = answer.objective.iter().flat_map(ObjectiveRecord::sentences);
-    for sentence in of_objective.chain(answer.outages.iter().map(OutageRecord::sentence)) {
+    for sentence in of_objective
+        .chain(answer.outages.iter().map(OutageRecord::sentence))
+        .chain(AmountRecord::layers_sentence(&answer.layer_costs))
+    {
         sheet.line(format_args!("{sentence}"));
     }
     if let Some(refusal) = &answer.commands_refusal {

@@ -62,7 +62,7 @@ impl Budget {
 impl Scenario {
     /// Whether paths are planned by an objective, within budgets of totals; otherwise by fewest hops, then effort or reliability.
     pub fn plans_by_objective(&self) -> bool {
-        self.objective.is_some() || self.budget.limits_totals()
+        self.objective.is_some() || self.budget.limits_totals() || self.layers.iter().any(|layer| layer.total_budget().is_some())
     }
 
     /// The objective: that of the scenario, or else hops, then effort.
@@ -74,7 +74,7 @@ impl Scenario {
     pub fn total_budgets(&self) -> Budgets {
         // The catalogue's ranges are those of a budget.
         let with = |budgets: Budgets, total: &TotalBudget| budgets.with(total.amount, total.most).unwrap_or(budgets);
-        self.budget.totals(&self.hopper).iter().fold(Budgets::NONE, with)
+        self.limited_totals().iter().fold(Budgets::NONE, with)
     }
 }
 
@@ -93,7 +93,12 @@ pub(super) fn budget(entries: &Entries) -> Budget {
 }
 
 /// Refuses a budget of success that nothing estimates.
-pub(super) fn check(entries: &mut Entries, budget: Budget, risk: ReliabilityUse, uncertainty: Option<&UncertaintyKeys>) {
+pub(super) fn check(
+    entries: &mut Entries,
+    (budget, limits_totals): (Budget, bool),
+    risk: ReliabilityUse,
+    uncertainty: Option<&UncertaintyKeys>,
+) {
     let Some(least) = budget.estimated_success_min else { return };
     let key = ("budget", "estimated_success_min");
     if uncertainty.is_none() {
@@ -101,7 +106,7 @@ pub(super) fn check(entries: &mut Entries, budget: Budget, risk: ReliabilityUse,
         let help = "add [uncertainty] with deviations above 0, such as takeoff_speed_sigma_fraction = 0.02, and goal_tolerance_m; or remove \
                     estimated_success_min";
         entries.problem(key, ProblemKind::Missing, message, help);
-    } else if budget.limits_totals() || entries.objective("search", "objective").is_some() {
+    } else if limits_totals || entries.objective("search", "objective").is_some() {
         let message = format!(
             "budget.estimated_success_min is {least} beside search.objective or another budget, expected one of the two: a path of \
              enough success is chosen from the front of hops against risk, not by an objective"
@@ -131,14 +136,14 @@ fn objective_of_travel() -> Option<Objective> {
 /// The objective; the commands, and the choice of take-off angle that the first amount wants, for a plan by objective.
 pub(super) fn objective(
     entries: &mut Entries,
-    budget: Budget,
+    (budget, limits_totals): (Budget, bool),
     hopper: &Hopper,
     uncertainty: Option<&UncertaintyKeys>,
     drives: bool,
 ) -> (Option<Objective>, SearchedCommands, Option<TakeoffChoice>) {
     let of_travel = || (drives && entries.text("search", "effort").is_none()).then(objective_of_travel).flatten();
     let objective = entries.objective("search", "objective").or_else(of_travel);
-    if objective.is_none() && !budget.limits_totals() {
+    if objective.is_none() && !limits_totals {
         return (None, SearchedCommands::Chosen, None);
     }
     let mut conflict = |key: (&str, &str), message: String, help: &str| entries.problem(key, ProblemKind::Conflict, message, help);

@@ -222,6 +222,11 @@ impl Entries {
         }
     }
 
+    /// The table of a layer.
+    pub(super) fn layer_table_mut(&mut self, name: &str) -> Option<&mut toml::Table> {
+        self.given.get_mut(&("layer".to_owned(), name.to_owned()))?.value.as_table_mut()
+    }
+
     /// The names of the keys given of a table, in their order.
     pub fn names_in(&self, table: &str) -> Vec<String> {
         self.given.keys().filter(|(known, _)| known == table).map(|(_, name)| name.clone()).collect()

@@ -101,7 +101,7 @@ impl Kind {
             Self::Amounts => format!(
                 "a list of 1 to {} of {}, each once, {} last only, such as [\"hops\", \"energy\"]",
                 Objective::MOST,
-                Amount::ALL.map(Amount::name).join(", "),
+                Amount::all_names(),
                 Amount::PeakSpeed
             ),
             Self::SlipCurve => {

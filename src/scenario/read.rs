@@ -134,24 +134,25 @@ impl Scenario {
         let derating = super::derating::derating(&mut entries, &hopper, &surface);
         let drive = super::drive::drive(&mut entries, terrain.as_ref(), route, hopper.limits());
         let drives = drive.as_ref().is_some_and(|keys| keys.travel.drives());
-        super::layers::check_outages(&mut entries, &layers, route, drives);
+        super::layers::check_of_paths(&mut entries, &layers, route, drives);
         let mission = super::mission::mission(&mut entries, terrain.as_ref(), route, drives);
         super::legs::check(&mut entries, &legs, (drives, mission.is_some()), &layers);
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
         let budget = super::budget::budget(&entries);
+        let limits_totals = budget.limits_totals() || layers.iter().any(|layer| layer.total_budget().is_some());
         let (objective, commands, wanted_angle) =
-            super::budget::objective(&mut entries, budget, &hopper, uncertainty.as_ref(), drives);
+            super::budget::objective(&mut entries, (budget, limits_totals), &hopper, uncertainty.as_ref(), drives);
         let (objective, commands) = match mesh_search.planner {
             RoadmapPlanner::Exact => (objective, commands),
             RoadmapPlanner::Prm => (Some(super::mesh_planner::objective_of_prm()), SearchedCommands::Distinct),
         };
-        let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries, uncertainty.as_ref(), budget);
+        let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries, uncertainty.as_ref(), (budget, limits_totals));
         // Nothing estimates the reliability of hops over a mesh.
         let over_mesh = matches!(terrain, Some(TerrainSource::MeshInSpace { .. }));
         // The time of a mission that drives is no count of hops beside which reliability is weighed; its objective may have risk.
         let (risk, risk_extra_hops_max) =
             if over_mesh || drives { (ReliabilityUse::Ignored, None) } else { (risk, risk_extra_hops_max) };
-        super::budget::check(&mut entries, budget, risk, uncertainty.as_ref());
+        super::budget::check(&mut entries, (budget, limits_totals), risk, uncertainty.as_ref());
         let takeoff = wanted_angle.unwrap_or_else(|| super::trials::takeoff_choice(risk, uncertainty.as_ref()));
         let search = search(&mut entries, takeoff);
         let mut problems = entries.problems().to_vec();

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     planner::{Amount, Objective},
-    world::SpeedLevels,
+    world::{LayerName, SpeedLevels},
 };
 
 /// The JSON schema (draft 2020-12) of a scenario as a document: its tables with the keys of [`CATALOGUE`], their kinds, bounds and
@@ -69,7 +69,8 @@ fn of_kind(kind: Kind) -> Value {
         }
         Kind::Amounts => {
             let names = Amount::ALL.map(Amount::name);
-            json!({ "type": "array", "items": { "enum": names }, "minItems": 1, "maxItems": Objective::MOST, "uniqueItems": true })
+            let items = json!({ "anyOf": [{ "enum": names }, { "pattern": LayerName::LIMIT_PATTERN }] });
+            json!({ "type": "array", "items": items, "minItems": 1, "maxItems": Objective::MOST, "uniqueItems": true })
         }
         Kind::FaceGroups => {
             let of_group = json!({
@@ -86,7 +87,7 @@ fn of_kind(kind: Kind) -> Value {
                         let word = json!({ "enum": APPLIES_TO });
                         json!({ "anyOf": [word, { "type": "array", "items": word, "minItems": 1 }] })
                     }
-                    "outage_max_s" => json!({ "type": "number", "minimum": 0 }),
+                    "outage_max_s" | "cost_per_contact" | "cost_per_m" | "total_max" => json!({ "type": "number", "minimum": 0 }),
                     "outage_hops_max" => json!({ "type": "integer", "minimum": 0 }),
                     "exempt_targets" => of_kind(Kind::Flag),
                     _ => json!({ "type": "number" }),

@@ -127,11 +127,15 @@ const fn is_on_a_map(terrain: Option<&TerrainSource>) -> bool {
 
 /// How risk weighs, and how many extra hops it may cost. Where errors are given, hops are traded for reliability unless the scenario says
 /// otherwise: a path planned without regard to them stands on the edge of its limits. A budget of success weighs errors of 0 as well.
-pub(super) fn risk(entries: &mut Entries, uncertainty: Option<&UncertaintyKeys>, budget: Budget) -> (ReliabilityUse, Option<u32>) {
+pub(super) fn risk(
+    entries: &mut Entries,
+    uncertainty: Option<&UncertaintyKeys>,
+    (budget, limits_totals): (Budget, bool),
+) -> (ReliabilityUse, Option<u32>) {
     let is_estimated = uncertainty.is_some() && budget.estimated_success_min.is_some();
     let absent = if is_estimated || has_errors(uncertainty) { ReliabilityUse::Traded } else { ReliabilityUse::Ignored };
     let given = super::read::find(&ReliabilityUse::ALL, ReliabilityUse::name, entries.text("search", "risk"));
-    let by_objective = budget.limits_totals() || entries.objective("search", "objective").is_some();
+    let by_objective = limits_totals || entries.objective("search", "objective").is_some();
     let absent = if by_objective && budget.estimated_success_min.is_none() { ReliabilityUse::Ignored } else { absent };
     let risk = given.unwrap_or(absent);
     if by_objective && budget.estimated_success_min.is_none() && risk != ReliabilityUse::Ignored {

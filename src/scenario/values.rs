@@ -74,7 +74,7 @@ pub(super) fn slip(value: &toml::Value) -> Option<SlipCurve> {
 
 /// An array of names of amounts that are an objective.
 pub(super) fn objective(value: &toml::Value) -> Option<Objective> {
-    let named = |name: &toml::Value| Amount::ALL.into_iter().find(|amount| name.as_str() == Some(amount.name()));
+    let named = |name: &toml::Value| name.as_str().and_then(Amount::named);
     Objective::new(value.as_array()?.iter().map(named).collect::<Option<Vec<_>>>()?).ok()
 }
 

@@ -110,6 +110,17 @@ pub enum CaseError {
         /// What is wanted, with its verb.
         question: &'static str,
     },
+    /// A layer with a cost, where paths are not what is asked for.
+    #[error(
+        "{question}, which does not count what a layer costs along a path, and layer.{layer} has a cost: remove its cost_per_contact, \
+         cost_per_m and total_max"
+    )]
+    LayerCost {
+        /// The layer.
+        layer: crate::world::LayerName,
+        /// What is wanted, with its verb.
+        question: &'static str,
+    },
     /// A question about targets without any.
     #[error("found no [mission], expected mission.targets_m")]
     NoTargets,

@@ -28,6 +28,7 @@ use crate::{
     report::{CheckAnswer, DeratingRecord, ObjectiveRecord, OutageRecord, RouteGapRecord, RouteKind, RouteRecord},
     scenario::{Route, Scenario, TerrainSource},
     terrain::{Layer, MapPlace, TerrainError},
+    world::LayerName,
 };
 
 /// Why a free route has no answer.
@@ -137,6 +138,16 @@ pub(super) fn hops_alone(scenario: &Scenario, question: &'static str) -> Result<
     if scenario.drives().is_some() { Err(CaseError::HopsOnly { question }) } else { Ok(()) }
 }
 
+/// Refuses a scenario with layers that count along whole paths, by outages or costs.
+///
+/// # Errors
+/// [`CaseError::Outage`] and [`CaseError::LayerCost`].
+pub(super) fn without_layers_of_paths(scenario: &Scenario, question: &'static str) -> Result<(), CaseError> {
+    without_outages(scenario, question)?;
+    let found = scenario.layers.iter().find(|layer| layer.rule.cost.is_some());
+    found.map_or(Ok(()), |layer| Err(CaseError::LayerCost { layer: layer.rule.name, question }))
+}
+
 /// Refuses a scenario with layers that may be left for a while.
 ///
 /// # Errors
@@ -146,12 +157,21 @@ pub(super) fn without_outages(scenario: &Scenario, question: &'static str) -> Re
     found.map_or(Ok(()), |layer| Err(CaseError::Outage { layer: layer.rule.name, question }))
 }
 
-/// What is to be known where hops are judged each by itself: layers that may be left for a while do not refuse them.
+/// What is to be known where hops are judged each by itself: layers that may be left for a while do not refuse them, and costs do not count.
 pub(super) fn outages_not_counted(scenario: &Scenario) -> impl Iterator<Item = String> + '_ {
-    scenario.layers.iter().filter(|layer| layer.rule.outage.is_some()).map(|layer| {
+    scenario.layers.iter().flat_map(|layer| {
         let name = layer.rule.name;
-        format!("layer.{name} may be left for a while, which counts along whole paths: it refuses no hop by itself")
+        let outage = layer
+            .rule
+            .outage
+            .map(|_| format!("layer.{name} may be left for a while, which counts along whole paths: it refuses no hop by itself"));
+        outage.into_iter().chain(layer.rule.cost.map(|_| cost_not_counted(name)))
     })
+}
+
+/// What is to be known of a layer with a cost where hops are judged each by itself.
+fn cost_not_counted(layer: LayerName) -> String {
+    format!("layer.{layer} has a cost, which counts along whole paths: it is not stated of a hop by itself")
 }
 
 /// Of a stop that refuses every contact: which layer does not hold there.
@@ -284,7 +304,7 @@ impl FreeSearch {
     fn objective_record(&self, route: &FreeRoute) -> Option<ObjectiveRecord> {
         let scenario = &self.case.scenario;
         let said = (route.path.as_ref().map(|path| path.totals), route.unmet.as_slice(), route.capped);
-        let budgets = scenario.budget.totals(&scenario.hopper);
+        let budgets = scenario.limited_totals();
         scenario.plans_by_objective().then(|| ObjectiveRecord::new(&self.objective, &budgets, said))
     }
 
@@ -500,5 +520,5 @@ fn verify(prepared: &Prepared, ground: &DemGround, path: &HopPath, ends: (Statio
 pub(super) fn execute_over_dem(ground: &DemGround, path: &HopPath) -> Execution {
     let on_map = |point: &ContactPoint| ContactPoint { station: None, ..*point };
     let hops = path.hops.iter().map(|hop| Hop { takeoff: on_map(&hop.takeoff), landing: on_map(&hop.landing), ..*hop });
-    execute(ground, &HopPath::of_hops(hops.collect(), ground.hopper()), None)
+    execute(ground, &HopPath { hops: hops.collect(), totals: path.totals }, None)
 }

@@ -24,6 +24,7 @@ use crate::{
     report::{FrontRecord, FrontSearchRecord, FrontSuccess, SuccessBudgetRecord, TotalsRecord, estimate_ci95},
     scenario::Scenario,
     uncertainty::{ESTIMATE_TRIALS, Mission, Policy, Simulation, TrialOptions, Uncertainty},
+    world::LayerName,
 };
 
 /// A front of hops against another amount, of which each path improves on one.
@@ -41,7 +42,13 @@ impl Front {
         (amount != Amount::Hops).then_some(Self { amount })
     }
 
-    /// All of them.
+    /// That of a name, such as `hops,energy` or `hops,layer:hazard`; `None` for any other text.
+    pub fn named(name: &str) -> Option<Self> {
+        let amount = name.strip_prefix(Amount::Hops.name())?.strip_prefix(',')?;
+        Amount::named(amount).and_then(Self::of_hops_against)
+    }
+
+    /// All of them but those against layers, which have any names.
     pub fn all() -> impl Iterator<Item = Self> {
         Amount::ALL.into_iter().filter_map(Self::of_hops_against)
     }
@@ -121,6 +128,7 @@ pub(super) fn amount_row(amount: Amount, (count, hops): (u64, &HopPath), planned
         planned,
         takeoff_speed_sum_m_s: only(Amount::TakeoffSpeed),
         arc_length_m: only(Amount::ArcLength),
+        layer_total: amount.layer().map(|_| amounts.of(amount)),
         totals: TotalsRecord::from(&hops.totals),
     }
 }
@@ -128,7 +136,8 @@ pub(super) fn amount_row(amount: Amount, (count, hops): (u64, &HopPath), planned
 /// Whether two paths take the same.
 pub(super) fn are_alike(first: &Amounts, second: &Amounts) -> bool {
     let alike = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs());
-    Amount::ALL.into_iter().all(|amount| alike(first.of(amount), second.of(amount)))
+    let of_layers = first.layers().iter().map(|(layer, _)| Amount::Layer(layer));
+    Amount::ALL.into_iter().chain(of_layers).all(|amount| alike(first.of(amount), second.of(amount)))
 }
 
 /// Whether the path of a plan takes these amounts.
@@ -152,6 +161,15 @@ pub enum FrontProblem {
          the time of bounces; take flight-time, or remove [contact]"
     )]
     Bounces,
+    /// A front of hops against the cost of a layer that has none.
+    #[error(
+        "found no layer {layer} with a cost for a front of hops against {}{layer}, expected layer.{layer} with a cost_per_contact or a cost_per_m",
+        LayerName::PREFIX
+    )]
+    NoCost {
+        /// The layer.
+        layer: LayerName,
+    },
 }
 
 impl Front {
@@ -160,6 +178,9 @@ impl Front {
         match self.amount {
             Amount::Risk if scenario.uncertainty.is_none() => Err(FrontProblem::NoErrors),
             Amount::MissionTime if scenario.hopper.limits().restitution.is_some() => Err(FrontProblem::Bounces),
+            Amount::Layer(layer) if !scenario.layers.iter().any(|known| known.rule.name == layer && known.rule.cost.is_some()) => {
+                Err(FrontProblem::NoCost { layer })
+            }
             _ => Ok(()),
         }
     }
@@ -201,6 +222,7 @@ pub(super) fn front(
             }),
             takeoff_speed_sum_m_s: None,
             arc_length_m: None,
+            layer_total: None,
             planned: matches!(&found.outcome, Outcome::Path { legs, .. } if *legs == path.legs),
             totals: TotalsRecord::from(&hops.totals),
         })

@@ -84,7 +84,8 @@ pub use void::{VoidPlace, VoidTaken};
 pub use walk::{FacetSpan, FacetWalk, Triangles};
 pub use window::{DemFile, Window};
 pub use xyz::read_xyz_bytes;
+pub(crate) use zones::Touch;
 pub use zones::{
-    FrictionRaster, KeepOut, Layer, LayerCondition, LayerRule, MapLayers, OutageLimit, VectorFormat, read_friction_raster,
-    read_keep_in, read_keep_out, read_layer,
+    FrictionRaster, KeepOut, Layer, LayerCondition, LayerCost, LayerRule, MapLayers, OutageLimit, VectorFormat,
+    read_friction_raster, read_keep_in, read_keep_out, read_layer,
 };

@@ -42,6 +42,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod density;
 mod exact_sum;
 pub mod experiments;
 mod hop_success;
@@ -70,6 +71,7 @@ pub use crate::{
     flight::{Distribution, DrawnErrors, ErrorKey, MeasuredErrors, Uncertainty, UncertaintyProblem},
     ground::LiftoffVelocity,
 };
+pub use density::{DensestCell, RestDensity};
 pub use legs::{LegsMission, LegsOutcome, LegsSummary};
 pub use mission::{MeshAims, Mission};
 pub use options::{MissionPoint, Observer, SimulationError, TrialOptions};

@@ -1092,7 +1092,7 @@ const COMPARE: [Trial; 9] = [
 ];
 
 /// Ground with all overlays, small enough for a test.
-const SIMULATE: [Trial; 29] = [
+const SIMULATE: [Trial; 31] = [
     ("--trajectory", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--trajectory", "t.csv"]),
     (
         "--step-s",
@@ -1127,6 +1127,16 @@ const SIMULATE: [Trial; 29] = [
         "--plot-map",
         &["simulate", "map.toml", "--trials", "20"],
         &["simulate", "map.toml", "--trials", "20", "--plot-map", "landings.svg"],
+    ),
+    (
+        "--density",
+        &["simulate", "map.toml", "--trials", "20"],
+        &["simulate", "map.toml", "--trials", "20", "--density", "rests.tif"],
+    ),
+    (
+        "--within",
+        &["simulate", "map.toml", "--trials", "20", "--density", "rests.tif"],
+        &["simulate", "map.toml", "--trials", "20", "--density", "rests.tif", "--within", "area.geojson"],
     ),
     ("--format", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--format", "json"]),
     ("--points-per-segment", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--points-per-segment", "2"]),
@@ -1359,6 +1369,7 @@ fn desk() -> Desk {
         format!("[robot]\nfile = \"light_legs.toml\"\n\n{}", walk.replace("node_spacing_max_m = 1.0", "contacts_max = 30")),
     );
     desk.write("one_leg.toml", include_str!("../../data/robots/one_leg.toml"));
+    desk.write("area.geojson", r#"{ "type": "Polygon", "coordinates": [[[0, 0], [12, 0], [12, 12], [0, 12], [0, 0]]] }"#);
     desk.write("other_map.toml", desk.read("map.toml").replace("= 0.8", "= 0.5"));
     desk.write("contacts.csv", "normal_x,normal_y,normal_z,friction_coefficient\n0,0,1,0.6\n1,0,0.2,0.4\n");
     desk.write("starts.csv", "x_m,y_m\n3,4\n15,16\n");
@@ -1576,6 +1587,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 "--plot-front",
                 "--plot-postures",
                 "--plot-map",
+                "--density",
                 "--pairs",
                 "--starts",
                 "--amount-output",

@@ -26,6 +26,7 @@ mod gis;
 mod hop_on_map;
 #[cfg(unix)]
 mod interrupt;
+mod layer_costs;
 mod legs_dem;
 mod map_command;
 mod map_layers;

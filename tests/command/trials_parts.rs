@@ -1,6 +1,7 @@
 //! `chta simulate` in ranges, with draws, along the path of a result, and against a success to be shown.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
+#![allow(clippy::cast_precision_loss, reason = "small counts")]
 
 use chta::uncertainty::{Tally, TrialOutcome};
 use serde_json::{Value, json};
@@ -9,6 +10,53 @@ use crate::desk::Desk;
 
 const ERRORS: &str = "\n[uncertainty]\ntakeoff_speed_sigma_fraction = 0.01\ntakeoff_angle_sigma_deg = 0.3\nposition_sigma_m = 0.05\n\
     drift_along_sigma_m = 0.1\nfriction_sigma = 0.02\ngoal_tolerance_m = 2.0\ntrials = 900\nseed = 4\n";
+
+/// The rows of a CSV by their columns.
+fn rows(text: &str) -> Vec<std::collections::HashMap<String, String>> {
+    let mut lines = text.lines();
+    let heads: Vec<String> = lines.next().unwrap().split(',').map(str::to_owned).collect();
+    lines.map(|line| heads.iter().cloned().zip(line.split(',').map(str::to_owned)).collect()).collect()
+}
+
+#[test]
+fn the_density_of_rests_is_that_of_the_landings() {
+    let desk = desk();
+    desk.write("area.geojson", r#"{ "type": "Polygon", "coordinates": [[[15, 0], [20, 0], [20, 20], [15, 20], [15, 0]]] }"#);
+    let map =
+        ["simulate", "dem.toml", "--trials", "400", "--policy", "open-loop", "--density", "rests.tif", "--within", "area.geojson"];
+    let answer = desk.json(&[&map[..], &["-o", "landings.csv"]].concat());
+    let rows = rows(&desk.read("landings.csv"));
+    let number = |row: &std::collections::HashMap<String, String>, key: &str| row[key].parse::<f64>().unwrap();
+    // The last landing of a trial is where it ends, unless it left the known ground in a later flight: that one has no row.
+    let ends: Vec<[f64; 2]> = rows
+        .iter()
+        .filter(|row| !row["outcome"].is_empty())
+        .map(|row| [number(row, "rest_map_x_m"), number(row, "rest_map_y_m")])
+        .collect();
+    let stays = answer["outcomes"]["slid_at_takeoff"].as_u64().unwrap() == 0;
+    let density = &answer["density"];
+    let share = |key: &str| density[key].as_f64().unwrap();
+    let trials = answer["trials"].as_f64().unwrap();
+    let inside = ends.iter().filter(|at| (15.0..=20.0).contains(&at[0]) && (0.0..=20.0).contains(&at[1])).count();
+    assert!(stays && inside > 0 && inside < ends.len(), "{inside} of {}", ends.len());
+    assert!((share("inside_share") - inside as f64 / trials).abs() < 1e-12, "{density}");
+    assert!((share("on_ground_share") - ends.len() as f64 / trials).abs() < 1e-12, "{density}");
+    // Posts of the map are a metre apart: the nearest one is that of the cell.
+    let count = |of: &[[f64; 2]], at: [f64; 2]| of.iter().filter(|end| (0..2).all(|i| (end[i] - at[i]).abs() < 0.5)).count();
+    let at = [density["greatest_m"][0].as_f64().unwrap(), density["greatest_m"][1].as_f64().unwrap()];
+    let most = ends.iter().map(|end| count(&ends, [end[0].round(), end[1].round()])).max().unwrap();
+    assert_eq!((count(&ends, at), share("greatest_share")), (most, most as f64 / trials), "{density}");
+    // The raster: a band of all ends, and one for each planned hop.
+    let hops = usize::try_from(answer["hops"].as_u64().unwrap()).unwrap();
+    assert_eq!(density["hops_counted"].as_u64(), Some(hops as u64));
+    let bytes = std::fs::read(desk.path().join("rests.tif")).unwrap();
+    let names = String::from_utf8_lossy(&bytes).into_owned();
+    assert!(names.contains("share of ends") && names.contains(&format!("share after hop {hops}")));
+    let refused = desk.run(&["simulate", "chain.toml", "--density", "rests.tif"]);
+    assert!(refused.status == 2 && refused.stderr.contains("lie on no DEM"), "{}", refused.stderr);
+    let text = desk.run(&[&map[..], &["--density", "rests.txt"]].concat());
+    assert_eq!(text.status, 2, "{}", text.stderr);
+}
 
 /// A scenario along a chain and one on a map, with errors.
 fn desk() -> Desk {

@@ -211,7 +211,11 @@ const LONGER_COMMANDS: [(&str, usize, &str); 4] = [
         "two answers: the size before the search, and the path; meshes, wheels and targets go on to files of their own",
     ),
     ("run.rs", 65, "meshes, wheels and targets go on to files of their own"),
-    ("simulate/mod.rs", 73, "experiments, meshes, wheels, legs and targets go on to files of their own"),
+    (
+        "simulate/mod.rs",
+        77,
+        "experiments, meshes, wheels, legs and targets go on to files of their own; a raster of rests beside landings",
+    ),
 ];
 
 /// A file of a command that has more lines than it may, or fewer than its exception grants by far.

@@ -11,11 +11,11 @@ use chta::{
     graph::{Outcome, PointSpacing, SearchOptions, search},
     ground::{DemGround, LandingTable, NodeLattice, PostHops, Surface, Sweep, Windows},
     hop::{HopTest, Split},
-    path::{ViolatedLimit, execute, generate},
+    path::{StatedValue, ViolatedLimit, execute, generate},
     quantity::{Angle, ChainPoint, MapPoint, VertexId},
     terrain::{
-        Dem, GeoReference, KeepOut, Layer, LayerCondition, LayerRule, MapLayers, OverlaidDem, Overlays, read_keep_out, read_layer,
-        write_geotiff,
+        Dem, GeoReference, KeepOut, Layer, LayerCondition, LayerCost, LayerRule, MapLayers, OverlaidDem, Overlays, read_keep_out,
+        read_layer, write_geotiff,
     },
     world::{
         Contact, Direction, FrictionCone, Gravity, Grip, Hopper, LayerName, Limit, RestSlope, Rover, RoverLimits, SurfaceProperties,
@@ -32,8 +32,12 @@ fn layer(raster: &Dem, name: &str, [on_contact, on_flight]: [bool; 2]) -> Layer 
     let path = folder.path().join("layer.tif");
     write_geotiff(raster, std::fs::File::create(&path).unwrap()).unwrap();
     let condition = LayerCondition { min: Some(0.5), ..LayerCondition::default() };
-    read_layer(&path, LayerRule { name: LayerName::new(name).unwrap(), condition, on_contact, on_flight, outage: None }, None)
-        .unwrap()
+    read_layer(
+        &path,
+        LayerRule { name: LayerName::new(name).unwrap(), condition, on_contact, on_flight, outage: None, cost: None },
+        None,
+    )
+    .unwrap()
 }
 
 /// Zones that are the cells of the same raster where the layer does not hold.
@@ -306,6 +310,52 @@ fn the_checker_judges_layers_by_itself() {
 }
 
 /// Hops along one long segment touch no ground that a layer refuses.
+#[test]
+fn the_checker_sums_costs_of_layers_by_itself() {
+    let draw = &mut Draw::seeded(2107);
+    let (mut held, mut noticed) = (0, 0);
+    for case in 0..120 {
+        let dem = random_dem(draw, 12);
+        let values = (0..30 * 30).map(|_| if draw.chance(0.3) { 0.0 } else { draw.uniform(0.0, 5.0) }).collect();
+        let (scale, map) = ([0.37, 0.5, 1.0][draw.below(3)], dem.georeference());
+        let corner = map.north_west() + nalgebra::Vector2::new(-2.0 * scale * map.dx_m(), 2.0 * scale * map.dy_m());
+        let raster = GeoReference::local(corner, scale * map.dx_m(), scale * map.dy_m()).unwrap();
+        let raster = Dem::new(30, 30, values, raster).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("cost.tif");
+        write_geotiff(&raster, std::fs::File::create(&file).unwrap()).unwrap();
+        let [per_contact, per_m] = [[2.0, 0.0], [0.0, 0.3], [1.0, 1.0]][draw.below(3)];
+        let cost = Some(LayerCost { per_contact, per_m, total_max: None });
+        let (name, condition) = (LayerName::new("hazard").unwrap(), LayerCondition::default());
+        let rule = LayerRule { name, condition, on_contact: false, on_flight: false, outage: None, cost };
+        let layers = MapLayers::new(vec![read_layer(&file, rule, None).unwrap()]);
+        let ground = ground(&dem, Overlays::default().with_layers(layers.clone()), draw.uniform(2.0, 6.0));
+        let ends = [place(draw, &dem), place(draw, &dem)];
+        let Ok(chain) = ground.chain(ends[0], ends[1]) else { continue };
+        let test = HopTest::new(chain);
+        let geometry = test.chain().geometry();
+        let (start, goal) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
+        let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(2)), ..SearchOptions::default() };
+        let Ok(answer) = search(&test, start, goal, &options, &()) else { continue };
+        let Outcome::Path { legs, .. } = answer.outcome else { continue };
+        let Ok(path) = generate(&test, &legs, TakeoffChoice::LeastSpeed, Split::Equal) else { continue };
+        let stated = path.totals.layers.of(name).unwrap_or_default();
+        let execution = execute(test.chain(), &path, Some((start, goal)));
+        assert!(execution.passes(), "case {case}: {stated} {:?}", execution.violations);
+        let Some(hop) = path.hops.first() else { continue };
+        let (from, to) = hop.map_ends().unwrap();
+        let own = layers.iter().next().unwrap().cost_of_hop(from, to);
+        assert!(own >= 0.0 && own <= stated * (1.0 + 1e-12));
+        held += 1;
+        let mut spoiled = path.clone();
+        spoiled.totals.layers = path.totals.layers.with(name, stated * 1.001 + 0.01);
+        let violations = execute(test.chain(), &spoiled, Some((start, goal))).violations;
+        assert!(matches!(violations[..], [v] if v.limit == ViolatedLimit::StatedValue(StatedValue::LayerCost)), "{violations:?}");
+        noticed += u32::from(stated > 0.0);
+    }
+    assert!(held > 20 && noticed > 15, "{held} held, {noticed} with a cost");
+}
+
 #[test]
 fn hops_along_a_segment_leave_out_what_a_layer_refuses() {
     let map = GeoReference::local(MapPoint::new(0.0, 40.0), 40.0, 40.0).unwrap();

@@ -10,7 +10,7 @@ use chta::{
 use clap::Args as ClapArgs;
 
 use super::{
-    super::{Failure, load::OwnKey},
+    super::{Failure, density, load::OwnKey},
     AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, Position, ProveArgs, SearchArgs, cell_count,
     maps::{SizeArgs, ViewArgs},
     max_gib, position, success_share, trial_number,
@@ -293,6 +293,13 @@ pub(crate) struct SimulateArgs {
     /// Picture of the landings on the map (SVG or PNG), with 95 % ellipses, for a DEM
     #[arg(long, value_name = "FILE", conflicts_with = "experiment")]
     pub(crate) plot_map: Option<PathBuf>,
+    /// Raster (GeoTIFF) of the share of trials that end in the cell of each post of a DEM, and in further bands of those that rest there
+    /// after each planned hop
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["experiment", "compare"])]
+    pub(crate) density: Option<PathBuf>,
+    /// Area (GeoJSON polygons or mask on the map) whose share of the trials' ends is stated, beside --density
+    #[arg(long, value_name = "FILE", requires = "density")]
+    pub(crate) within: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) trajectory: TrajectoryArgs,
     #[command(flatten)]
@@ -434,9 +441,14 @@ impl PlanArgs {
     /// The front by its amounts.
     pub(crate) fn front(&self) -> Result<Option<Front>, Failure> {
         let Some(given) = self.front.as_deref() else { return Ok(None) };
-        let found = Front::all().find(|front| front.name() == given);
+        let found = Front::named(given);
         let possible = || Front::all().map(Front::name).collect::<Vec<_>>().join(" or ");
-        let none = || Failure::message(format!("--front: found '{given}', expected {}: hops first, then one amount", possible()));
+        let none = || {
+            Failure::message(format!(
+                "--front: found '{given}', expected {} or hops,layer:NAME: hops first, then one amount",
+                possible()
+            ))
+        };
         found.ok_or_else(none).map(Some)
     }
 }
@@ -481,6 +493,9 @@ impl SimulateArgs {
         self.check_half_width()?;
         if self.plot_map.is_some() && !case.is_on_dem() {
             return Err(Failure::message("--plot-map: the landings lie on no DEM; give the scenario [terrain] dem, or use --plot"));
+        }
+        if let Some(file) = &self.density {
+            density::check(file, case)?;
         }
         Ok(())
     }

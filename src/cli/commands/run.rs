@@ -54,7 +54,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     if loaded.case.scenario.uncertainty.is_some() && planned.path.is_some() {
         let trials = Trials::new(&planned, &SimulateOptions::default());
         output::warn_all(args.quiet, trials.warnings());
-        let simulated = Listener::fly(trials, None, &Progress::new(args.quiet))?;
+        let simulated = Listener::fly(trials, None, None, &Progress::new(args.quiet))?;
         folder.trials(&simulated, &loaded)?;
         trials_text = simulated.answer.simulation.as_ref().map(|record| format!("\n{}", record.text())).unwrap_or_default();
     }

@@ -240,6 +240,10 @@ fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends
     }
     apply_options(&mut source.entries, common, search, ends);
     if *kind == TargetKind::Raster && ends.is_of_hop() {
+        for layer in source.entries.forget_costs_of_layers() {
+            let warning = format!("layer.{layer} has a cost, which counts along whole paths: it is not stated of a hop by itself");
+            output::warn(common.quiet, &warning);
+        }
         for layer in source.entries.forget_layers_with_outages() {
             let warning =
                 format!("layer.{layer} may be left for a while, which counts along whole paths: it refuses no hop by itself");

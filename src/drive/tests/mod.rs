@@ -52,7 +52,8 @@ fn layers(draw: &mut Draw, dem: &Dem) -> MapLayers {
     let file = folder.path().join("layer.tif");
     write_geotiff(&Dem::new(30, 30, values, map).unwrap(), std::fs::File::create(&file).unwrap()).unwrap();
     let condition = LayerCondition { min: Some(0.04), ..LayerCondition::default() };
-    let rule = LayerRule { name: LayerName::new("sun").unwrap(), condition, on_contact: true, on_flight: false, outage: None };
+    let rule =
+        LayerRule { name: LayerName::new("sun").unwrap(), condition, on_contact: true, on_flight: false, outage: None, cost: None };
     MapLayers::new(vec![read_layer(&file, rule, None).unwrap()])
 }
 

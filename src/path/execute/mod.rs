@@ -8,6 +8,7 @@
 mod checker;
 mod flight;
 mod footprint;
+mod layer_costs;
 mod layers;
 mod over_mesh;
 mod stores;
@@ -59,7 +60,7 @@ impl Execution {
 /// Checks of each hop: it begins where the one before landed; the ground's refusals (direction, keep-out, rest slope); directions
 /// and speeds at both ends; the machine's angles, height and time; the clearance over every vertex flown past, and that
 /// the arc stays above the ground between them; the actual landing point; with brakes the touchdown instead of the arc's landing;
-/// and the numbers that the plan states, delta-v and propellant among them. Every violation is reported.
+/// and the numbers that the plan states, delta-v, propellant and what layers of the map cost among them. Every violation is reported.
 ///
 /// Speed limits have the crate's tolerance, [`tolerant_speed_m_s`](crate::world::tolerant_speed_m_s). The checker's own tolerances
 /// are a nanoradian for directions, 1e-12 of a flight's size for positions (plus the rounding of the ground's heights), and the
@@ -144,6 +145,9 @@ fn executed<S: Surface>(surface: &S, way: &Way<S>, path: &HopPath, ends: Option<
         (Some(before), Some((_, goal))) => joins(path.hops.len(), (&before, &goal), &mut violations),
         (None, Some((start, goal))) => joins(0, (&start, &goal), &mut violations),
         (_, None) => {}
+    }
+    if let Some(layers) = surface.layers() {
+        layer_costs::check(layers, path, &mut violations);
     }
     Execution { flights, violations }
 }

@@ -42,6 +42,8 @@ pub enum StatedValue {
     Propellant,
     /// The mass after the hop.
     MassEnd,
+    /// What a layer of the map costs the whole path.
+    LayerCost,
 }
 
 impl StatedValue {
@@ -64,6 +66,7 @@ impl StatedValue {
             Self::DeltaV => "delta-v",
             Self::Propellant => "propellant",
             Self::MassEnd => "mass at the end",
+            Self::LayerCost => "cost of a layer",
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::{Roadmap, RoadmapGround};
 use crate::{
     ballistics::{Arc, TakeoffChoice},
-    planner::{Amount, Amounts, LeastAmounts, LegGraph, LegVisitor, PathStep, SearchedCommands, Successor},
+    planner::{Amounts, LeastAmounts, LegGraph, LegVisitor, PathStep, SearchedCommands, Successor},
     progress::Cancelled,
 };
 
@@ -62,10 +62,9 @@ impl<G: RoadmapGround> LegGraph for RoadmapLegs<'_, G> {
     }
 
     fn successors(&self, node: usize, visitor: &mut dyn LegVisitor) -> Result<(), Cancelled> {
-        const ONE_HOP: Amounts = Amounts::NONE.with(Amount::Hops, 1.0);
         let (roadmap, envelope) = (self.roadmap, self.ground.envelope());
         for hop in roadmap.hops_from(node) {
-            if self.hops_left[hop.landing].is_none() || !visitor.may_improve(hop.landing, &ONE_HOP) {
+            if self.hops_left[hop.landing].is_none() || !visitor.may_improve(hop.landing, &Amounts::ONE_HOP) {
                 continue;
             }
             let Some(sight) = roadmap.sight(self.ground, node, hop.landing) else { continue };

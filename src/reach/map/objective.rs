@@ -75,15 +75,15 @@ impl MapObjective {
     /// Refuses an objective of what is no sum over the hops of a map.
     ///
     /// # Errors
-    /// [`MapError::Request`] for risk, and for an amount that does not add up in the first place.
+    /// [`MapError::Request`] for risk, for layers, and for an amount that does not add up in the first place.
     pub fn accepts(objective: &Objective) -> Result<(), MapError> {
         let refused = if objective.first().adds_up() {
-            objective.amounts().iter().find(|amount| **amount == Amount::Risk)
+            objective.amounts().iter().find(|amount| matches!(amount, Amount::Risk | Amount::Layer(_)))
         } else {
             Some(&Amount::PeakSpeed)
         };
         refused.map_or(Ok(()), |refused| {
-            let expected = "amounts without risk, the first of which adds up over hops: hops, takeoff-speed, delta-v, energy, flight-time, \
+            let expected = "amounts without risk and layers, the first of which adds up over hops: hops, takeoff-speed, delta-v, energy, flight-time, \
                             mission-time, distance or arc-length";
             Err(MapError::Request { what: "the objective of a map", found: refused.name().to_owned(), expected })
         })
@@ -109,7 +109,7 @@ impl MapObjective {
             Amount::MissionTime => (flight_s() + self.limits.preparation_time_s.unwrap_or(0.0)) * SHAVED,
             Amount::Distance => run_m,
             Amount::ArcLength => chord_m * SHAVED,
-            Amount::Risk => 0.0,
+            Amount::Risk | Amount::Layer(_) => 0.0,
         }
     }
 

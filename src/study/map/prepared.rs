@@ -12,7 +12,7 @@ use crate::{
     scenario::Scenario,
     study::{
         DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body,
-        free_route::without_outages,
+        free_route::without_layers_of_paths,
         nodes::{coarse_map_nodes, level_hop_m, post_spacing_m},
         pipeline::planned_over,
         with_measured_errors,
@@ -65,7 +65,7 @@ impl PreparedMap {
     pub fn new(question: &MapQuestion<'_>) -> Result<Self, MapStudyError> {
         let MapQuestion { scenario, base, dem: file, stride, .. } = question;
         let aim = question.aim()?;
-        without_outages(scenario, "a map is made of hops, each by itself")?;
+        without_layers_of_paths(scenario, "a map is made of hops, each by itself")?;
         // Single hops need no start.
         if question.starts.is_empty() && !question.ranks_sites && !question.mobility {
             return Err(MapStudyError::NoStart);

@@ -5,21 +5,25 @@ mod flyer;
 #[cfg(feature = "plot")]
 mod pictures;
 
-use std::{ops::Range, path::PathBuf, sync::Arc};
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use advice::advice;
 pub(super) use flyer::Flyer;
 #[cfg(feature = "plot")]
 pub(super) use pictures::trials_picture;
 
-use super::{CaseError, Planned, TrialGround};
+use super::{CaseError, Planned, TrialGround, dem_ground::dem_ground};
 use crate::{
     graph::{NodesError, SearchError},
     ground::DemGround,
     progress::{Cancelled, Progress},
     report::{HopRecord, SimulateAnswer, SimulationRecord},
-    terrain::{Dem, TerrainError},
-    uncertainty::{Observer, Policy, Simulation, SimulationError, Summary, Tally, TrialOptions},
+    terrain::{Dem, TerrainError, read_keep_out},
+    uncertainty::{Observer, Policy, RestDensity, Simulation, SimulationError, Summary, Tally, TrialOptions},
 };
 
 /// How many trials are kept with all their hops, for the pictures.
@@ -61,6 +65,9 @@ pub enum SimulateError {
     /// A question that trials do not answer.
     #[error(transparent)]
     Case(#[from] CaseError),
+    /// The area whose share is asked for.
+    #[error(transparent)]
+    Area(TerrainError),
     /// The trials.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
@@ -160,6 +167,27 @@ impl Trials {
         &self.warnings
     }
 
+    /// Counts of where they rest, for an observer: none yet. `area`: a file of zones whose share is asked for.
+    ///
+    /// # Returns
+    /// `None` if they are not flown over a DEM.
+    ///
+    /// # Errors
+    /// [`SimulateError::Dem`] and [`SimulateError::Area`].
+    pub fn density(&self, area: Option<&Path>) -> Result<Option<RestDensity>, SimulateError> {
+        let Some(ground) = dem_ground(&self.planned.case)? else { return Ok(None) };
+        let dem = ground.terrain().dem();
+        let read = |path: &Path| {
+            read_keep_out(path, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|error| match error {
+                TerrainError::Overlay { path, problem, .. } => TerrainError::Overlay { what: "area", path, problem },
+                other => other,
+            })
+        };
+        let area = area.map(read).transpose().map_err(SimulateError::Area)?;
+        let hops = self.planned.path.as_ref().map_or(0, |path| path.hops.len());
+        Ok(Some(RestDensity::over(&ground, hops, area)))
+    }
+
     /// Flies those of a range of numbers under the scenario's policy, as a tally that merges with those of other ranges: the trials of a
     /// campaign can be flown in parts, by several processes, and together give the answer of the whole to the byte.
     ///
@@ -195,6 +223,7 @@ impl Trials {
             compare: Vec::new(),
             requirement: None,
             advice,
+            density: None,
         }
         .requiring(self.success_min)
     }
@@ -207,8 +236,15 @@ impl Trials {
         let Self { planned, policies, options, success_min, tally, warnings } = self;
         let (check, rows) = (planned.answer.check.clone(), planned_rows(&planned));
         let Some(path) = &planned.path else {
-            let answer =
-                SimulateAnswer { check, path: rows, simulation: None, compare: Vec::new(), requirement: None, advice: Vec::new() };
+            let answer = SimulateAnswer {
+                check,
+                path: rows,
+                simulation: None,
+                compare: Vec::new(),
+                requirement: None,
+                advice: Vec::new(),
+                density: None,
+            };
             let answer = answer.requiring(success_min);
             return Ok(Simulated { planned, summaries: Vec::new(), tallies: Vec::new(), answer, warnings, ground: None });
         };
@@ -226,7 +262,8 @@ impl Trials {
             planned: Arc::clone(&planned),
             summaries,
             tallies,
-            answer: SimulateAnswer { check, path: rows, simulation, compare, requirement: None, advice }.requiring(success_min),
+            answer: SimulateAnswer { check, path: rows, simulation, compare, requirement: None, advice, density: None }
+                .requiring(success_min),
             warnings,
             ground: flyer.into_ground(),
         })

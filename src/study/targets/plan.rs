@@ -16,9 +16,9 @@ use crate::{
     progress::Progress,
     quantity::MapPoint,
     report::{
-        DeratingRecord, HopRecord, LeftOutRecord, ObjectiveRecord, OverBudgetRecord, PropellantShortage, TargetHopRecord,
-        TargetRecord, TargetsAnswer, TargetsSearchRecord, TotalsRecord, TripRecord, VisitRecord, WhyRecord, path_geojson,
-        write_target_hops_csv,
+        AmountRecord, DeratingRecord, HopRecord, LeftOutRecord, ObjectiveRecord, OverBudgetRecord, PropellantShortage,
+        TargetHopRecord, TargetRecord, TargetsAnswer, TargetsSearchRecord, TotalsRecord, TripRecord, VisitRecord, WhyRecord,
+        path_geojson, write_target_hops_csv,
     },
     scenario::Scenario,
 };
@@ -200,7 +200,7 @@ fn amounts_of(number: usize, flown: &FlownLeg, scenario: &Scenario) -> Amounts {
 
 fn answer(search: &TargetsSearch, tour: &Tour, legs: &[FlownLeg], path: Option<&HopPath>) -> TargetsAnswer {
     let (free, scenario, stops) = (&search.free, search.scenario(), &search.stops);
-    let budgets = scenario.budget.totals(&scenario.hopper);
+    let budgets = scenario.limited_totals();
     let objective = ObjectiveRecord::new(&free.objective, &budgets, (path.map(|_| tour.totals), &[], tour.capped));
     let objective = path.map_or_else(|| objective.clone(), |path| objective.clone().flown(&path.amounts()));
     let propellant_shortage = path.and_then(|path| PropellantShortage::of(&path.totals));
@@ -231,6 +231,7 @@ fn answer(search: &TargetsSearch, tour: &Tour, legs: &[FlownLeg], path: Option<&
         hops_lower_bound: fewest_hops_of_visits(&bound, stops.len() - 1, search.keys.order, search.keys.return_to_start),
         objective,
         outages,
+        layer_costs: path.map_or_else(Vec::new, |path| AmountRecord::of_layers(&path.totals.layers)),
         derating: DeratingRecord::of(&scenario.derating),
         propellant_shortage,
         search: TargetsSearchRecord {

@@ -1,4 +1,6 @@
-//! Layers: rasters with a condition that has to hold at contacts or under flights.
+//! Layers: rasters with a condition that has to hold at contacts or under flights, or with a cost there.
+
+mod cost;
 
 use std::{
     fmt,
@@ -86,6 +88,17 @@ impl OutageLimit {
     }
 }
 
+/// What a layer costs a path, of which the sum over all hops is an amount.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LayerCost {
+    /// For each landing: this times the value of the cell.
+    pub per_contact: f64,
+    /// For each metre of ground flown over: this times the value of the cell.
+    pub per_m: f64,
+    /// The greatest total of a path; `None`: any.
+    pub total_max: Option<f64>,
+}
+
 /// What a layer asks for, and of what.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayerRule {
@@ -99,6 +112,17 @@ pub struct LayerRule {
     pub on_flight: bool,
     /// For how long it may be unmet: it then refuses no single hop, and counts along whole paths. `None`: it has to hold always.
     pub outage: Option<OutageLimit>,
+    /// What it costs; `None`: nothing.
+    pub cost: Option<LayerCost>,
+}
+
+/// What of a hop touches the cells of a layer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Touch {
+    /// Take-offs, landings and ground that is driven over.
+    Contact,
+    /// The ground under a flight.
+    Flight,
 }
 
 /// A raster on the terrain's map whose condition restricts contacts or flights.
@@ -112,6 +136,8 @@ pub struct Layer {
     raster: Dem,
     /// For each row of cells, how many of those before each column do not hold: one more number than columns.
     refused_before: Vec<u32>,
+    /// The same of cells without a value, of a layer with a cost; else empty.
+    unknown_before: Vec<u32>,
     /// Why its map could not be compared with the terrain's.
     not_compared: Option<String>,
 }
@@ -120,7 +146,8 @@ pub struct Layer {
 /// map, if it has one.
 ///
 /// # Errors
-/// [`TerrainError::Overlay`]: the file cannot be read, is not a raster on a map in metres, or has another map.
+/// [`TerrainError::Overlay`]: the file cannot be read, is not a raster on a map in metres, or has another map; or the layer has a cost, and
+/// a value of the raster is negative.
 ///
 /// # Examples
 /// ```
@@ -129,7 +156,7 @@ pub struct Layer {
 /// let file = folder.path().join("sun.asc");
 /// std::fs::write(&file, "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n0.9 0.8 0.1\n0.9 0.7 0.6\n")?;
 /// let condition = LayerCondition { min: Some(0.3), ..LayerCondition::default() };
-/// let rule = LayerRule { name: LayerName::new("sun").unwrap(), condition, on_contact: true, on_flight: true, outage: None };
+/// let rule = LayerRule { name: LayerName::new("sun").unwrap(), condition, on_contact: true, on_flight: true, outage: None, cost: None };
 /// let sun = read_layer(&file, rule, None)?;
 /// // The shaded cell is x from 20 to 30, y from 10 to 20; its border belongs to it.
 /// let holds = [(19.9, 15.0), (20.0, 15.0), (25.0, 15.0), (25.0, 9.9), (31.0, 5.0)].map(|(x, y)| sun.holds_at(MapPoint::new(x, y)));
@@ -148,18 +175,30 @@ pub fn read_layer(path: &Path, rule: LayerRule, coordinates: Option<&CoordinateS
         SameMap::Agreed => None,
         SameMap::NotCompared(reason) => Some(format!("{WHAT} {} '{}': {reason}", rule.name, name_of(path))),
     };
-    let refused_before = refused_before(&raster, &rule.condition);
-    Ok(Layer { rule, path: path.to_path_buf(), raster, refused_before, not_compared })
+    if rule.cost.is_some()
+        && let Some((row, col, value)) = cost::first_negative(&raster)
+    {
+        let name = rule.name;
+        return Err(failed(format!(
+            "the cell in row {}, column {} has {value}, expected no negative value, for layer.{name} has a cost, and what adds up is never \
+             negative; shift the values (gdal_calc -A in.tif --calc='A-A.min()' --outfile out.tif), or set them to 0",
+            row + 1,
+            col + 1
+        )));
+    }
+    let refused_before = counts_before(&raster, &|value| !value.is_some_and(|value| rule.condition.holds(value)));
+    let unknown_before = if rule.cost.is_some() { counts_before(&raster, &|value| value.is_none()) } else { Vec::new() };
+    Ok(Layer { rule, path: path.to_path_buf(), raster, refused_before, unknown_before, not_compared })
 }
 
-/// For each row of cells, how many of those before each column do not hold.
-fn refused_before(raster: &Dem, condition: &LayerCondition) -> Vec<u32> {
+/// For each row of cells, how many of those before each column are counted.
+fn counts_before(raster: &Dem, is_counted: &dyn Fn(Option<f64>) -> bool) -> Vec<u32> {
     let mut before = Vec::with_capacity(raster.rows() * (raster.cols() + 1));
     for row in 0..raster.rows() {
         let mut count = 0;
         before.push(count);
         for col in 0..raster.cols() {
-            count += u32::from(!raster.elevation(row, col).is_some_and(|value| condition.holds(value)));
+            count += u32::from(is_counted(raster.elevation(row, col)));
             before.push(count);
         }
     }
@@ -209,6 +248,32 @@ impl Layer {
 
     /// Whether the condition holds at every point of a straight line on the map.
     pub fn holds_between(&self, from: MapPoint, to: MapPoint) -> bool {
+        self.is_free_of(&self.refused_before, from, to)
+    }
+
+    /// Whether it refuses to be touched along a straight line on the map: by its condition, unless it may be left for a while, and where it
+    /// has a cost by a value that is not known.
+    pub(crate) fn refuses(&self, touch: Touch, from: MapPoint, to: MapPoint) -> bool {
+        self.refusing_counts(touch).any(|before| !self.is_free_of(before, from, to))
+    }
+
+    /// Whether it may refuse to be touched anywhere.
+    fn may_refuse(&self, touch: Touch) -> bool {
+        self.refusing_counts(touch).next().is_some()
+    }
+
+    /// The counts of the cells that refuse to be touched.
+    fn refusing_counts(&self, touch: Touch) -> impl Iterator<Item = &[u32]> {
+        let LayerRule { on_contact, on_flight, outage, cost, .. } = self.rule;
+        let factor = |cost: LayerCost| if touch == Touch::Contact { cost.per_contact } else { cost.per_m };
+        let by_condition = outage.is_none() && if touch == Touch::Contact { on_contact } else { on_flight };
+        let by_cost = cost.is_some_and(|cost| factor(cost) > 0.0);
+        let refused = by_condition.then_some(self.refused_before.as_slice());
+        refused.into_iter().chain(by_cost.then_some(self.unknown_before.as_slice()))
+    }
+
+    /// Whether no counted cell is met by a straight line on the map, which does not leave the raster.
+    fn is_free_of(&self, before: &[u32], from: MapPoint, to: MapPoint) -> bool {
         let track = self.track(from, to);
         let (whole, counts) = ((0.0, 1.0), [self.raster.cols(), self.raster.rows()]);
         let Some(rows) = cells_in(track.span(1, whole), counts[1]) else { return false };
@@ -217,7 +282,8 @@ impl Layer {
         }
         rows.into_iter().all(|row| {
             let within = track.shares(1, as_f64(row) - ON_A_BORDER, as_f64(row + 1) + ON_A_BORDER);
-            within.0 > within.1 || cells_in(track.span(0, within), counts[0]).is_some_and(|cols| self.refused_in(row, &cols) == 0)
+            within.0 > within.1
+                || cells_in(track.span(0, within), counts[0]).is_some_and(|cols| self.count_in(before, row, &cols) == 0)
         })
     }
 
@@ -234,8 +300,13 @@ impl Layer {
         [takeoff, flight, landing]
     }
 
-    /// The parts of a straight line on the map where the condition does not hold, as shares of the way, in any order.
-    pub(crate) fn refused_shares(&self, from: MapPoint, to: MapPoint) -> Vec<(f64, f64)> {
+    /// The parts of a straight line on the map where it refuses to be touched, as shares of the way, in any order.
+    pub(crate) fn refused_shares(&self, touch: Touch, from: MapPoint, to: MapPoint) -> Vec<(f64, f64)> {
+        self.refusing_counts(touch).flat_map(|before| self.counted_shares(before, from, to)).collect()
+    }
+
+    /// The parts of a straight line on the map on counted cells and beyond the raster.
+    fn counted_shares(&self, before: &[u32], from: MapPoint, to: MapPoint) -> Vec<(f64, f64)> {
         let track = self.track(from, to);
         let [cols, rows] = [self.raster.cols(), self.raster.rows()];
         let [across, down] =
@@ -255,7 +326,7 @@ impl Layer {
                 continue;
             }
             for col in cells_in(track.span(0, band), cols).into_iter().flatten() {
-                if self.refused_in(row, &(col..=col)) == 0 {
+                if self.count_in(before, row, &(col..=col)) == 0 {
                     continue;
                 }
                 let cell = track.shares(0, as_f64(col) - ON_A_BORDER, as_f64(col + 1) + ON_A_BORDER);
@@ -284,9 +355,10 @@ impl Layer {
                 .or_else(|| Some(format!("{} does not lie on {on}, so that it refuses everything there", named())));
         };
         let (cells, refused) = down.fold((0, 0), |(cells, refused), row| {
-            (cells + across.end() + 1 - across.start(), refused + self.refused_in(row, &across) as usize)
+            (cells + across.end() + 1 - across.start(), refused + self.count_in(&self.refused_before, row, &across) as usize)
         });
         match refused {
+            0 if self.rule.cost.is_some() => None,
             0 => Some(format!("{} holds all over {on}, so that it has no effect there", named())),
             refused if refused == cells => Some(format!("{} holds nowhere on {on}, so that it refuses everything there", named())),
             _ => None,
@@ -300,10 +372,10 @@ impl Layer {
         Track { from, by: [to[0] - from[0], to[1] - from[1]] }
     }
 
-    /// How many cells of a row do not hold.
-    fn refused_in(&self, row: usize, cols: &std::ops::RangeInclusive<usize>) -> u32 {
+    /// How many cells of a row are counted.
+    fn count_in(&self, before: &[u32], row: usize, cols: &std::ops::RangeInclusive<usize>) -> u32 {
         let begin = row * (self.raster.cols() + 1);
-        self.refused_before[begin + cols.end() + 1] - self.refused_before[begin + cols.start()]
+        before[begin + cols.end() + 1] - before[begin + cols.start()]
     }
 }
 
@@ -347,12 +419,12 @@ impl MapLayers {
 
     /// The layer that refuses a contact at a position, if one does.
     pub fn refusing_contact(&self, at: MapPoint) -> Option<LayerName> {
-        self.refusing(|rule| rule.on_contact, at, at)
+        self.refusing(Touch::Contact, at, at)
     }
 
     /// The layer that refuses a flight from one position to another, if one does.
     pub fn refusing_flight(&self, from: MapPoint, to: MapPoint) -> Option<LayerName> {
-        self.refusing(|rule| rule.on_flight, from, to)
+        self.refusing(Touch::Flight, from, to)
     }
 
     /// The layer that refuses a hop from one position to another, by its contacts or its flight, if one does.
@@ -363,7 +435,7 @@ impl MapLayers {
 
     /// The layer that refuses to be driven over from one position to another, if one does: wheels touch the ground all the way.
     pub fn refusing_wheels(&self, from: MapPoint, to: MapPoint) -> Option<LayerName> {
-        self.refusing(|rule| rule.on_contact, from, to)
+        self.refusing(Touch::Contact, from, to)
     }
 
     /// The layers that may be left for a while.
@@ -371,8 +443,12 @@ impl MapLayers {
         self.0.iter().filter(|layer| layer.rule.outage.is_some())
     }
 
-    fn refusing(&self, counts: impl Fn(&LayerRule) -> bool, from: MapPoint, to: MapPoint) -> Option<LayerName> {
-        let refuses = |layer: &&Layer| layer.rule.outage.is_none() && counts(&layer.rule) && !layer.holds_between(from, to);
-        self.0.iter().find(refuses).map(|layer| layer.rule.name)
+    /// The layers that may refuse to be touched.
+    pub(crate) fn refusing_any(&self, touch: Touch) -> impl Iterator<Item = &Layer> {
+        self.0.iter().filter(move |layer| layer.may_refuse(touch))
+    }
+
+    fn refusing(&self, touch: Touch, from: MapPoint, to: MapPoint) -> Option<LayerName> {
+        self.0.iter().find(|layer| layer.refuses(touch, from, to)).map(|layer| layer.rule.name)
     }
 }

@@ -22,7 +22,8 @@ mod vector;
 
 pub use friction::{FrictionRaster, read_friction_raster};
 pub use keep_out::{KeepOut, read_keep_in, read_keep_out};
-pub use layer::{Layer, LayerCondition, LayerRule, MapLayers, OutageLimit, read_layer};
+pub(crate) use layer::Touch;
+pub use layer::{Layer, LayerCondition, LayerCost, LayerRule, MapLayers, OutageLimit, read_layer};
 pub use vector::VectorFormat;
 
 #[cfg(test)]

@@ -19,6 +19,7 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
     not_on_mesh::refuse_for_legs(&[
         ("--experiment", args.experiment.is_some(), "is flown along a profile"),
         ("--output", args.output.is_some(), "writes landings along a profile"),
+        ("--density", args.density.is_some(), "counts landings of a point on a map"),
         ("--plot-map", args.plot_map.is_some(), "draws landings of a point on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
         ("--tally", args.tally.is_some(), "writes the landings of a point"),

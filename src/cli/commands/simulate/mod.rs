@@ -14,6 +14,7 @@ use chta::{
 use crate::cli::{
     Answer, Failure,
     args::SimulateArgs,
+    density::DensityFile,
     effects::Purpose,
     hints::further_means,
     inputs,
@@ -51,6 +52,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let plot_map = output::begin_picture("--plot-map", args.plot_map.as_deref())?;
     let tally = args.tally.as_deref().map(Pending::begin).transpose()?;
+    let mut density = DensityFile::begin(args.density.as_deref())?;
     let in_time = TrajectoryFile::begin(&args.trajectory)?;
     let quiet = args.common.quiet;
     let planned = plan_to_fly(args, &loaded, &Progress::new(quiet))?;
@@ -60,7 +62,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let trials = Trials::new(&planned, &args.options());
     output::warn_all(quiet, trials.warnings());
     // Without a path the file of landings is not written.
-    let simulated = Listener::fly(trials, rows.filter(|_| planned.path.is_some()), &Progress::new(quiet))?;
+    let (rows, rests) = (rows.filter(|_| planned.path.is_some()), density.of(&trials, args.within.as_deref())?);
+    let mut simulated = Listener::fly(trials, rows, rests, &Progress::new(quiet))?;
+    density.add(&mut files, &mut simulated)?;
     files.picture(plot, || simulated.picture())?;
     files.picture(plot_map, || simulated.landing_map())?;
     files.json(tally, simulated.tallies.first())?;

@@ -1,0 +1,54 @@
+//! Where trials come to rest, in numbers.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::uncertainty::{RestDensity, Wilson};
+
+/// Where the trials end on the map; the whole is in the raster.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct DensityRecord {
+    /// The share of trials that end on the ground: the sum of the raster's first band. The others leave the known ground in flight.
+    pub on_ground_share: f64,
+    /// How many hops have a band each in the raster, after the band of the ends.
+    pub hops_counted: usize,
+    /// The greatest share that ends in one cell.
+    pub greatest_share: f64,
+    /// The post of that cell, [x, y], m; absent if no trial ends on the ground.
+    pub greatest_m: Option<[f64; 2]>,
+    /// The share that ends in the area that was asked for; absent without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inside_share: Option<f64>,
+    /// Its 95 % interval (Wilson).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inside_share_ci95: Option<[f64; 2]>,
+}
+
+impl DensityRecord {
+    /// The numbers of a density.
+    pub fn new(density: &RestDensity) -> Self {
+        let inside = density.ended_in_area().map(|count| Wilson::of(count, density.trials()));
+        let densest = density.densest();
+        Self {
+            on_ground_share: Wilson::of(density.ended_on_ground(), density.trials()).rate,
+            hops_counted: density.hops(),
+            greatest_share: densest.map_or(0.0, |cell| cell.share),
+            greatest_m: densest.map(|cell| [cell.at.x, cell.at.y]),
+            inside_share: inside.map(|inside| inside.rate),
+            inside_share_ci95: inside.map(|inside| [inside.low, inside.high]),
+        }
+    }
+
+    /// The same as lines.
+    pub(super) fn text(&self) -> String {
+        let mut text = format!("\nrests: {:.4} of the trials end on the ground", self.on_ground_share);
+        if let Some([x, y]) = self.greatest_m {
+            text.push_str(&format!(", at most {:.4} in one cell, at ({x}, {y}) m", self.greatest_share));
+        }
+        text.push('\n');
+        if let (Some(share), Some([low, high])) = (self.inside_share, self.inside_share_ci95) {
+            text.push_str(&format!("inside the area: {share:.4} (95 % interval {low:.4} to {high:.4})\n"));
+        }
+        text
+    }
+}
