@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use chta::{
-    report::{PageGround, page_html},
-    study::{PageDocuments, PageError, page_ground, page_ground_over_facets},
+    report::page_html,
+    study::{PageDocuments, page_ground, page_ground_over_facets},
 };
 
 use super::{
@@ -44,16 +44,13 @@ pub(crate) enum PageInput<'a> {
 }
 
 impl PageInput<'_> {
-    fn ground(self, documents: &PageDocuments) -> Result<PageGround, PageError> {
-        match self {
-            Self::Case(loaded) => page_ground(&loaded.case, documents, &loaded.record.inputs),
-            Self::Facets(input) => page_ground_over_facets((&input.scenario, &input.base), documents, input.inputs()),
-        }
-    }
-
     /// The page of documents over this ground.
     pub(crate) fn page(self, documents: &PageDocuments) -> Result<Vec<u8>, Failure> {
-        let ground = self.ground(documents).map_err(|error| Failure::of(&error))?;
+        let ground = match self {
+            Self::Case(loaded) => page_ground(&loaded.case, documents, &loaded.record.inputs),
+            Self::Facets(input) => page_ground_over_facets((&input.scenario, &input.base), documents, input.inputs()),
+        };
+        let ground = ground.map_err(|error| Failure::of(&error))?;
         Ok(page_html(&documents.of_page(), &ground).map_err(|error| Failure::of(&error))?.into_bytes())
     }
 }

@@ -23,6 +23,7 @@ mod footprint;
 mod free_route;
 mod free_studies;
 mod gis;
+mod guide;
 mod hop_on_map;
 #[cfg(unix)]
 mod interrupt;

@@ -38,7 +38,7 @@ fn a_run_and_its_documents_make_the_same_page() {
     let title = "[report]\ntitle = \"a </script> & <b>\"\n\n";
     desk.write("errors.toml", title.to_owned() + &desk.read("map.toml") + ERRORS);
     let ran = desk.run(&["run", "errors.toml", "-o", "out", "--report", "out/page.html"]);
-    assert_eq!((ran.status, ran.stderr.contains("error")), (0, false), "{ran:?}");
+    assert_eq!((ran.status, ran.stderr.contains("error: ")), (0, false), "{ran:?}");
     let ran = desk.run(&["report", "out/simulation.json", "out/result.json", "-o", "again.html"]);
     assert_eq!((ran.status, ran.stderr.as_str()), (0, ""), "{ran:?}");
     let page = desk.read("out/page.html");

@@ -15,7 +15,7 @@ pub use ground::{PageFacets, PageGround, PageLayer, PagePosts, ProfileCut, Profi
 const BUNDLE: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/page.zlib"));
 
 /// Where the documents stand in the bundle.
-const MARK: &str = "<!--chta:documents-->";
+const MARK: &str = "<template id=\"documents\"></template>";
 
 /// A document of a page.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -20,8 +20,8 @@ pub enum DocumentInPage {
     Json(serde_json::Error),
     /// A kind of document that a page does not show.
     #[error(
-        "found a document of {0}, expected one with a path (plan, run, simulate), or beside it a trade or simulate --experiment \
-         sensitivity: a page shows these alone"
+        "found a document of {0}, expected one with a path (plan, run, simulate), or beside it a trade or the sensitivity to errors: a page \
+         shows these alone"
     )]
     Kind(String),
     /// A second document of one kind.
@@ -44,9 +44,7 @@ pub enum DocumentInPage {
     #[error("its inputs are not those of the document with the path, expected the same files: give documents of one scenario")]
     OtherInputs,
     /// Another path.
-    #[error(
-        "its path is not that of the plan: give trials of this plan, such as those of `chta simulate` with the plan's document"
-    )]
+    #[error("its path is not that of the plan, expected trials of the same path: give those that were flown along it")]
     OtherPath,
     /// A version of the document without a needed key.
     #[error(transparent)]

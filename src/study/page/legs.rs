@@ -36,6 +36,11 @@ fn of_leg(leg: &Value) -> Option<Vec<Place>> {
     Some(vec![place("takeoff")?, place("landing")?])
 }
 
+/// All places on the map.
+pub(super) fn on_map(legs: &[Vec<Place>]) -> Vec<MapPoint> {
+    legs.iter().flatten().map(|place| place.at).collect()
+}
+
 /// The ground of a DEM under every leg.
 ///
 /// # Errors

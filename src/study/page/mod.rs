@@ -13,7 +13,7 @@ pub use documents::{DocumentInPage, PageDocuments};
 
 use self::{
     facets::{cuts_of, page_facets},
-    legs::{pieces_over, places},
+    legs::{on_map, pieces_over, places},
     posts::page_posts,
 };
 use super::{
@@ -92,7 +92,7 @@ pub fn page_ground(case: &Case, documents: &PageDocuments, inputs: &[InputFile])
         Route::Free => pieces_over(overlaid.dem(), &legs)?,
         Route::Transect => vec![whole_chain(case)],
     };
-    let (posts, layers) = page_posts(overlaid, legs.iter().flatten().map(|place| place.at).collect());
+    let (posts, layers) = page_posts(overlaid, &on_map(&legs));
     Ok(PageGround { pieces, posts: Some(posts), layers, ..PageGround::default() })
 }
 
@@ -118,7 +118,7 @@ pub fn page_ground_over_facets(
     };
     if let Some(map) = map {
         let pieces = pieces_over(map.dem(), &legs)?;
-        let (posts, layers) = page_posts(&map, legs.iter().flatten().map(|place| place.at).collect());
+        let (posts, layers) = page_posts(&map, &on_map(&legs));
         return Ok(PageGround { pieces, posts: Some(posts), layers, ..PageGround::default() });
     }
     let tree = ground.tree();

@@ -18,9 +18,9 @@ const NO_DATA: u16 = u16::MAX;
 const HIGHEST: f64 = 65_534.0;
 
 /// The posts about these places, and where overlays refuse contact at them.
-pub(super) fn page_posts(overlaid: &OverlaidDem, places: Vec<MapPoint>) -> (PagePosts, Vec<PageLayer>) {
+pub(super) fn page_posts(overlaid: &OverlaidDem, places: &[MapPoint]) -> (PagePosts, Vec<PageLayer>) {
     let dem = overlaid.dem();
-    let (rows, cols) = window(dem, &places);
+    let (rows, cols) = window(dem, places);
     let stride = rows.len().max(cols.len()).div_ceil(SIDE_MAX).max(1);
     let kept: [Vec<usize>; 2] = [rows.clone(), cols.clone()].map(|range| range.step_by(stride).collect());
     let posts = || kept[0].iter().flat_map(|&row| kept[1].iter().map(move |&col| (row, col)));
@@ -109,6 +109,10 @@ mod tests {
     use super::*;
     use crate::terrain::{GeoReference, Overlays};
 
+    fn as_f64(count: usize) -> f64 {
+        f64::from(u32::try_from(count).unwrap())
+    }
+
     fn overlaid(rows: usize, cols: usize, z_m: impl Fn(usize, usize) -> f64) -> OverlaidDem {
         let heights = (0..rows * cols).map(|index| z_m(index / cols, index % cols)).collect();
         let map = GeoReference::local(MapPoint::new(100.0, 900.0), 2.0, 3.0).unwrap();
@@ -117,9 +121,9 @@ mod tests {
 
     #[test]
     fn a_small_raster_is_there_as_a_whole_to_half_a_step() {
-        let z_m = |row: usize, col: usize| if (row, col) == (1, 2) { f64::NAN } else { (row * 7 + col * 3) as f64 / 10.0 };
+        let z_m = |row: usize, col: usize| if (row, col) == (1, 2) { f64::NAN } else { as_f64(row * 7 + col * 3) / 10.0 };
         let ground = overlaid(4, 5, z_m);
-        let (posts, layers) = page_posts(&ground, Vec::new());
+        let (posts, layers) = page_posts(&ground, &[]);
         assert_eq!((posts.rows, posts.columns, posts.stride, layers.len()), (4, 5, 1, 0));
         assert_eq!((posts.west_m, posts.north_m, posts.dx_m, posts.dy_m), (100.0, 900.0, 2.0, 3.0));
         for (index, step) in posts.steps.iter().enumerate() {
@@ -133,18 +137,18 @@ mod tests {
 
     #[test]
     fn a_large_raster_is_cut_about_the_path_and_thinned_to_the_greatest_side() {
-        let ground = overlaid(1500, 1300, |row, col| (row + col) as f64);
-        let (whole, _) = page_posts(&ground, Vec::new());
+        let ground = overlaid(1500, 1300, |row, col| as_f64(row + col));
+        let (whole, _) = page_posts(&ground, &[]);
         assert_eq!((whole.stride, whole.rows, whole.columns), (3, 500, 434));
         let map = ground.dem().georeference();
-        let near = vec![map.post(700, 600), map.post(720, 660)];
-        let (cut, _) = page_posts(&ground, near.clone());
+        let near = [map.post(700, 600), map.post(720, 660)];
+        let (cut, _) = page_posts(&ground, &near);
         assert_eq!(cut.stride, 1);
         assert!(cut.rows < 200 && cut.columns < 200 && (cut.of_rows, cut.of_columns) == (1500, 1300));
         // The first post of the page is the one of the raster that stands there.
         let (row, col) = ((900.0 - cut.north_m) / 3.0, (cut.west_m - 100.0) / 2.0);
         assert!((cut.z_min_m + f64::from(cut.steps[0]) * cut.z_step_m - (row + col)).abs() <= 0.51 * cut.z_step_m);
-        let (east_m, south_m) = (cut.west_m + (cut.columns - 1) as f64 * cut.dx_m, cut.north_m - (cut.rows - 1) as f64 * cut.dy_m);
+        let (east_m, south_m) = (cut.west_m + as_f64(cut.columns - 1) * cut.dx_m, cut.north_m - as_f64(cut.rows - 1) * cut.dy_m);
         assert!(near.iter().all(|at| (cut.west_m..=east_m).contains(&at.x) && (south_m..=cut.north_m).contains(&at.y)));
     }
 
