@@ -82,13 +82,13 @@ fn maps_sites_and_varied_keys_are_those_of_the_command() {
     let words = ["map", dem, "--scenario", rille, "--start", "60,60", "--stride", "8"];
     same(&words, opened(rille).map_hops(&asked, &()).map(|map| map.reply));
     let asked = SitesAsked { stride: 16, every: 4, ..SitesAsked::default() };
-    same(&["sites", rille, "--stride", "16", "--every", "4"], opened(rille).sites(&asked, &()));
+    same(&["sites", rille, "--stride", "16", "--every", "4", "--require-all"], opened(rille).sites(&asked, &()));
     let (simple, key) = ("data/scenarios/simple_reduced.toml", "hopper.takeoff_speed_max_m_s");
     let requirement = Requirement::new(key, [None, None], 0.001, 4000, "vary").unwrap();
     let cells = ["require", simple, "--vary", key, "--prove-cells-max", "4000"];
     same(&cells, opened(simple).require(&requirement, &()));
     let swept = [SweptKey::parse(&format!("{key}=2:6:5")).unwrap()];
-    same(&["trade", simple, "--vary", &format!("{key}=2:6:5")], opened(simple).trade(&swept, None, &()));
+    same(&["trade", simple, "--vary", &format!("{key}=2:6:5"), "--require-all"], opened(simple).trade(&swept, None, &()));
 }
 
 #[test]

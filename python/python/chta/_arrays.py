@@ -186,7 +186,7 @@ class Dem:
         >>> flat = chta.Dem.from_array(np.zeros((9, 9)), (1, 0, 0, 0, -1, 9))
         >>> grid = flat.hop_map((0.5, 0.5), body="moon", hopper=chta.Hopper(3, 3), surface=chta.Surface(0.6))
         >>> int(grid.hops.max())
-        2
+        3
         """
         if direction not in ("out", "back"):
             raise InputError(f"direction is {direction!r}, expected out or back")

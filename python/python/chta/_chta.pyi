@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 _F = NDArray[np.float64]
 _Progress = Callable[[str, int, int | None], bool | None]
 
+__all__ = ["LIMITS", "VERSION", "Chain", "Dem", "Draft", "Reply", "Rasters"]
+
 LIMITS: list[str]
 VERSION: str
 
@@ -116,8 +118,8 @@ class Draft:
     def map(
         self,
         dem: str | os.PathLike[str] | None = None,
-        starts_m: Sequence[tuple[float, float]] = [],
-        goals_m: Sequence[tuple[float, float]] = [],
+        starts_m: Sequence[tuple[float, float]] = ...,
+        goals_m: Sequence[tuple[float, float]] = ...,
         stride: int = 1,
         auto_nodes: bool = False,
         effort: bool = False,
@@ -125,7 +127,7 @@ class Draft:
         mobility: bool = False,
         trials: bool = False,
         hops_max: int | None = None,
-        amounts: Sequence[str] = [],
+        amounts: Sequence[str] = ...,
         memory_max_bytes: int | None = None,
         threads: int | None = None,
         progress: _Progress | None = None,
@@ -133,9 +135,9 @@ class Draft:
     def sites(
         self,
         dem: str | os.PathLike[str] | None = None,
-        candidates_m: Sequence[tuple[float, float]] = [],
+        candidates_m: Sequence[tuple[float, float]] = ...,
         every: int = 1,
-        targets_m: Sequence[tuple[float, float]] = [],
+        targets_m: Sequence[tuple[float, float]] = ...,
         stride: int = 1,
         auto_nodes: bool = False,
         memory_max_bytes: int | None = None,

@@ -79,7 +79,7 @@ impl Draft {
     /// [`OpenError::Unreadable`].
     pub fn read_scenario(file: &Path, name: String, base: &Path) -> Result<Self, OpenError> {
         let mut draft = Self::of_toml(&read_bounded(file, &name)?, &name, base);
-        if file.display().to_string() == name {
+        if file == Path::new(&name) {
             draft.entries.set_default_title(&file.file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default());
         }
         Ok(draft)

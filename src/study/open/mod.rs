@@ -1,8 +1,8 @@
 //! From a scenario as it is written to its answers: the way in for programs that embed this crate.
 //!
 //! A [`Draft`] holds the keys of a scenario before they are validated: of a file, of a text, of a result. Settings replace single keys.
-//! Each question is a method of it, which opens the terrain of the scenario, whatever it is, and gives a [`Reply`]: the document that
-//! `--format json` of the command writes, to the byte.
+//! Each question is a method of it, which opens the terrain of the scenario, whatever it is, and gives a [`Reply`]: the document that the
+//! command of the same name writes as JSON, to the byte.
 //!
 //! ```
 //! use chta::study::open::{Draft, PlanAsked};
