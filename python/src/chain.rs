@@ -105,9 +105,11 @@ impl Chain {
             return Err(errors::input(py, "z_m", found, "as many as x_m"));
         }
         let segments = x_m.len().saturating_sub(1);
-        let of_segments = |name: &str, count: usize| match count == segments {
-            true => Ok(()),
-            false => Err(errors::input(py, name, format!("{count} values"), "one for each segment, one fewer than vertices")),
+        let of_segments = |name: &str, count: usize| {
+            if count == segments {
+                return Ok(());
+            }
+            Err(errors::input(py, name, format!("{count} values"), "one for each segment, one fewer than vertices"))
         };
         let cross = cross_slope_deg.as_ref().map(|array| array.as_slice()).transpose()?;
         let friction = friction_coefficient.as_ref().map(|array| array.as_slice()).transpose()?;

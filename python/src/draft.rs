@@ -75,7 +75,7 @@ impl Rasters {
     /// The reference system as well-known text; `None` if it is not known.
     #[getter]
     fn crs_wkt(&self) -> Option<String> {
-        self.0.projection.as_ref().ok().map(|known| known.wkt())
+        self.0.projection.as_ref().ok().map(chta::terrain::MapProjection::wkt)
     }
 
     /// The hops to every node, row after row from the north.

@@ -41,12 +41,11 @@ impl Class {
     fn of(error: &AskError) -> Self {
         match error {
             AskError::Open(OpenError::File(error)) => Self::of_pipeline(error),
-            AskError::Open(OpenError::Case(error)) => Self::of_case(error),
+            AskError::Open(OpenError::Case(error)) | AskError::Require(RequireError::Case(error)) => Self::of_case(error),
             AskError::Journey(error)
             | AskError::Check(CheckError::Journey(error))
             | AskError::Plan(PlanError::Journey(error))
             | AskError::Require(RequireError::Journey(error)) => Self::of_journey(error),
-            AskError::Require(RequireError::Case(error)) => Self::of_case(error),
             AskError::Map(error) | AskError::LegsMap(LegsMapError::Map(error)) => Self::of_map(error),
             AskError::Simulate(SimulateError::Dem { .. })
             | AskError::MeshHop(MeshHopError::Terrain(_))

@@ -65,7 +65,8 @@ impl BatchFolder {
     fn parts(&self) -> Result<Vec<PathBuf>, Failure> {
         let listed = fs::read_dir(&self.folder).map_err(|error| failed(&self.folder, &error))?;
         let is_part = |path: &PathBuf| {
-            path.file_name().and_then(|name| name.to_str()).is_some_and(|name| name.starts_with("part-") && name.ends_with(".csv"))
+            let named = path.file_stem().is_some_and(|name| name.to_string_lossy().starts_with("part-"));
+            named && path.extension().is_some_and(|ending| ending == "csv")
         };
         let mut parts: Vec<_> = listed.filter_map(|entry| Some(entry.ok()?.path())).filter(is_part).collect();
         parts.sort();
@@ -103,8 +104,8 @@ impl BatchFolder {
         if let Some(first) = self.open.first() {
             let (table, number) = (self.table(&self.open)?, first[0].parse::<usize>().unwrap_or_default());
             // Another run may have answered the same case with others, or under another scenario: the content tells the parts apart.
-            let digest: String = Sha256::digest(&table).iter().take(6).map(|byte| format!("{byte:02x}")).collect();
-            output::to_file(&self.folder.join(format!("part-{number:08}-{digest}.csv")), &table)?;
+            let tag = Sha256::digest(&table).iter().take(6).fold(0_u64, |tag, byte| tag << 8 | u64::from(*byte));
+            output::to_file(&self.folder.join(format!("part-{number:08}-{tag:012x}.csv")), &table)?;
             self.open.clear();
             self.written += 1;
         }

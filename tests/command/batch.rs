@@ -17,7 +17,8 @@ fn cases(count: usize) -> String {
     let mut text = "hopper.takeoff_speed_max_m_s,search.points_per_segment\n".to_owned();
     for i in 0..count {
         let speed = 4.0 + 8.0 * f64::from(u32::try_from(i).unwrap()) / f64::from(u32::try_from(count).unwrap());
-        text += &if i == 3 { "-1,3\n".to_owned() } else { format!("{speed},{}\n", 3 + i % 4) };
+        let row = if i == 3 { "-1,3\n".to_owned() } else { format!("{speed},{}\n", 3 + i % 4) };
+        text.push_str(&row);
     }
     text
 }

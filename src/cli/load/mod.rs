@@ -451,7 +451,7 @@ fn read_source(input: &Input) -> Result<Draft, Failure> {
     let name = input.given.display().to_string();
     // A pipe has no folder: its paths start from the working folder.
     let folder = if input.is_stream() { None } else { path.parent() }.unwrap_or(Path::new(""));
-    let read = if input.is_result() { Draft::read_result(path, name) } else { Draft::read_scenario(path, name, folder) };
+    let read = if input.is_result() { Draft::read_result(path, name) } else { Draft::read_scenario(path, &name, folder) };
     let draft = read.map_err(|error| Failure::of(&error))?;
     Ok(Draft { wording: WORDING, ..draft })
 }

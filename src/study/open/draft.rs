@@ -64,10 +64,10 @@ impl Draft {
         let kind = FileKind::of(file).map_err(|error| unread(error.to_string(), CHECK_PATH))?;
         let has_ending = |known| file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(known));
         match kind {
-            FileKind::Scenario => Self::read_scenario(file, name, file.parent().unwrap_or(Path::new(""))),
+            FileKind::Scenario => Self::read_scenario(file, &name, file.parent().unwrap_or(Path::new(""))),
             FileKind::Result | FileKind::Json => Self::read_result(file, name),
             _ if has_ending("json") => Self::read_result(file, name),
-            _ if has_ending("toml") => Self::read_scenario(file, name, file.parent().unwrap_or(Path::new(""))),
+            _ if has_ending("toml") => Self::read_scenario(file, &name, file.parent().unwrap_or(Path::new(""))),
             other => Err(unread(format!("this is {}", other.name()), "give a scenario (TOML) or a result (JSON)")),
         }
     }
@@ -77,9 +77,9 @@ impl Draft {
     ///
     /// # Errors
     /// [`OpenError::Unreadable`].
-    pub fn read_scenario(file: &Path, name: String, base: &Path) -> Result<Self, OpenError> {
-        let mut draft = Self::of_toml(&read_bounded(file, &name)?, &name, base);
-        if file == Path::new(&name) {
+    pub fn read_scenario(file: &Path, name: &str, base: &Path) -> Result<Self, OpenError> {
+        let mut draft = Self::of_toml(&read_bounded(file, name)?, name, base);
+        if file == Path::new(name) {
             draft.entries.set_default_title(&file.file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default());
         }
         Ok(draft)

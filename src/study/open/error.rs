@@ -128,7 +128,7 @@ pub enum AskError {
     MeshRoute(#[from] MeshRouteError),
     /// The path of a result over a mesh.
     #[error(transparent)]
-    MeshReadBack(#[from] MeshReadBackError),
+    MeshReadBack(Box<MeshReadBackError>),
     /// Trials over a mesh.
     #[error(transparent)]
     MeshTrials(#[from] MeshTrialsError),
@@ -147,6 +147,12 @@ pub enum AskError {
     /// The document cannot be written; plain data gives no such error.
     #[error("the result cannot be written as JSON ({0})")]
     Json(#[from] serde_json::Error),
+}
+
+impl From<MeshReadBackError> for AskError {
+    fn from(error: MeshReadBackError) -> Self {
+        Self::MeshReadBack(Box::new(error))
+    }
 }
 
 impl From<CaseError> for AskError {
