@@ -10,7 +10,7 @@ use std::{
 
 use crate::desk::{ACROSS, CHAIN, Desk, FORWARD_ONLY, FOUR_LEGS, Ran};
 
-const COMMANDS: [&str; 19] = [
+const COMMANDS: [&str; 20] = [
     "run",
     "slice",
     "map",

@@ -9,7 +9,7 @@ use crate::desk::{ACROSS, Desk, FOUR_LEGS};
 /// A command that ends with 0, and one that ends with 1.
 type Case = (&'static str, &'static [&'static str], Option<&'static [&'static str]>);
 
-const CASES: [Case; 20] = [
+const CASES: [Case; 21] = [
     ("run", &["run", "scenario.toml", "-o", "out"], Some(&["run", "slippery.toml", "-o", "out"])),
     ("slice", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], None),
     ("fan", &["fan", "ground.tif", "--from", "9,9", "--headings", "4", "--length", "5", "--scenario", "map.toml"], None),

@@ -1,11 +1,6 @@
 //! `chta batch`: many cases of one scenario.
 
-use std::ops::ControlFlow;
-
-use chta::{
-    progress::{Progress, Step},
-    study::{BatchRow, CaseTable},
-};
+use chta::study::{BatchRow, CaseTable};
 
 use crate::cli::{
     Answer, Failure,
@@ -14,18 +9,10 @@ use crate::cli::{
     inputs, interrupt,
     load::load_draft,
     output::{self, Pending},
+    progress::Progress,
     threads,
     wrong_thing::Role,
 };
-
-/// Goes on until an interrupt.
-struct UntilInterrupted;
-
-impl Progress for UntilInterrupted {
-    fn report(&self, _: &Step) -> ControlFlow<()> {
-        if interrupt::is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
-}
 
 /// Answers every case.
 pub(crate) fn run(args: &BatchArgs) -> Result<Answer, Failure> {
@@ -39,13 +26,16 @@ pub(crate) fn run(args: &BatchArgs) -> Result<Answer, Failure> {
     rows.retain(|case, row| *case < cases.count() && !row[1].is_empty() && row[1] == cases.key(&draft, *case));
     let kept = rows.len();
     let wanted: Vec<usize> = (0..cases.count()).filter(|case| !rows.contains_key(case)).collect();
+    let progress = Progress::new(false);
     // Some cases for each thread, so that none waits long for the slowest.
     for some in wanted.chunks(4 * rayon::current_num_threads().max(1)) {
-        let answers: Vec<BatchRow> = cases.answers(&draft, some, &UntilInterrupted);
+        let line = |_: &_| Some(format!("{} of {} cases", rows.len(), cases.count()));
+        let answers: Vec<BatchRow> = cases.answers(&draft, some, &progress.with_lines(line));
         interrupt::check()?;
         folder.add(&answers)?;
         rows.extend(some.iter().copied().zip(answers.into_iter().map(|row| row.cells)));
     }
+    drop(progress);
     folder.close()?;
     if let Some(file) = collected {
         folder.collect(&rows, file)?;
