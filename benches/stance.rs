@@ -7,6 +7,7 @@
 //! eight-edge pyramids that the plane parts, sorts them by angle, and takes the largest gap for the outside: its answer is narrower.
 
 #![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
+#![allow(clippy::print_stderr, reason = "it says what it skips")]
 
 use std::f64::consts::TAU;
 

@@ -67,7 +67,7 @@ pub enum Subject {
         /// Its hops.
         hops: Thinned<HopFigure>,
         /// Its totals.
-        totals: Totals,
+        totals: Box<Totals>,
     },
     /// No path over these nodes.
     Stopped(Box<StoppedFigure>),
@@ -225,7 +225,7 @@ impl FigureData {
 /// The hops of a path.
 fn path_subject(input: &FigureInput<'_>, path: &HopPath) -> Subject {
     let all = path.hops.iter().enumerate().map(|(i, hop)| hop_figure(input, i + 1, hop));
-    Subject::Path { hops: Thinned::of(all, MOST_HOPS_DRAWN), totals: path.totals }
+    Subject::Path { hops: Thinned::of(all, MOST_HOPS_DRAWN), totals: Box::new(path.totals) }
 }
 
 /// One hop with its flight and its two cones.

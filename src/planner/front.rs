@@ -3,6 +3,9 @@
 use super::{Amount, Budgets, FoundPath, LabelCap, LegGraph, labels::Tracked, search::Run};
 use crate::progress::Cancelled;
 
+/// Sums in another order differ by less, as a share of the greatest: no more hops for a total that is the same.
+const ROUNDING: f64 = 1e-12;
+
 /// All paths of which none takes less of one amount without taking more of the other, ascending in the first: for every number of hops the
 /// path with the least of the second amount, if it takes less than all paths with fewer hops. Within budgets; of equal paths one.
 ///
@@ -24,12 +27,11 @@ pub fn front(
     paths.sort_by(|a, b| {
         a.totals.of(first).total_cmp(&b.totals.of(first)).then(a.totals.of(second).total_cmp(&b.totals.of(second)))
     });
-    /// Sums in another order differ by less: no more hops for a total that is the same.
-    const ROUNDING: f64 = 1.0 - 1e-12;
+    let greatest = paths.iter().map(|path| path.totals.of(second)).fold(0.0, f64::max);
     // With a budget on a third amount the labels of the goal are a front of three.
     let mut least = f64::INFINITY;
     paths.retain(|path| {
-        let improves = path.totals.of(second) < least * ROUNDING;
+        let improves = path.totals.of(second) < least - ROUNDING * greatest;
         least = least.min(path.totals.of(second));
         improves
     });

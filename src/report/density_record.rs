@@ -41,14 +41,12 @@ impl DensityRecord {
 
     /// The same as lines.
     pub(super) fn text(&self) -> String {
-        let mut text = format!("\nrests: {:.4} of the trials end on the ground", self.on_ground_share);
-        if let Some([x, y]) = self.greatest_m {
-            text.push_str(&format!(", at most {:.4} in one cell, at ({x}, {y}) m", self.greatest_share));
-        }
-        text.push('\n');
-        if let (Some(share), Some([low, high])) = (self.inside_share, self.inside_share_ci95) {
-            text.push_str(&format!("inside the area: {share:.4} (95 % interval {low:.4} to {high:.4})\n"));
-        }
-        text
+        let densest = self
+            .greatest_m
+            .map_or(String::new(), |[x, y]| format!(", at most {:.4} in one cell, at ({x}, {y}) m", self.greatest_share));
+        let inside = self.inside_share.zip(self.inside_share_ci95).map_or(String::new(), |(share, [low, high])| {
+            format!("inside the area: {share:.4} (95 % interval {low:.4} to {high:.4})\n")
+        });
+        format!("\nrests: {:.4} of the trials end on the ground{densest}\n{inside}", self.on_ground_share)
     }
 }

@@ -123,7 +123,8 @@ impl FootJointsRecord {
 impl PushRecord {
     /// Of a robot at rest in a stance; `None` where its mass is not known, and where its feet do not bear it without slipping and toppling.
     pub fn at_rest(ground: &StanceGround, stance: &Stance) -> Option<Self> {
-        let feet = ground.rest(stance)?.into_iter().map(|push| FootPushRecord::of(ground, push));
+        let feet = ground.rest(stance)?;
+        let feet = feet.iter().map(|push| FootPushRecord::of(ground, push));
         Some(Self { feet: feet.collect() })
     }
 
@@ -132,7 +133,7 @@ impl PushRecord {
         let [takeoff, landing] = flight.pushes_m_s();
         let pushes = ground.push(stance, if contact == Contact::Takeoff { takeoff } else { landing })?;
         let times = flight.foot_times(contact);
-        let feet = pushes.into_iter().map(|push| {
+        let feet = pushes.iter().map(|push| {
             let time = times.iter().find(|time| time.limb == push.limb);
             let (contact_s, stretch_m) = (time.map(|time| time.reaches_for_s), time.map(|time| time.way_m));
             FootPushRecord { contact_s, stretch_m, ..FootPushRecord::of(ground, push) }
@@ -164,7 +165,7 @@ impl PushRecord {
 }
 
 impl FootPushRecord {
-    fn of(ground: &StanceGround, push: FootPush) -> Self {
+    fn of(ground: &StanceGround, push: &FootPush) -> Self {
         Self {
             limb: ground.robot().limbs()[push.limb].name.clone(),
             force_n: push.force_n.into(),

@@ -332,33 +332,37 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
             end.reason
         ));
     }
-    if let Some(frontier) = &answer.frontier {
-        sheet.line(format_args!(
-            "from the start one gets to x = {} m ({} nodes); the goal can be reached from x = {} m ({} nodes)",
-            place(frontier.reached_x_m),
-            frontier.reached_nodes,
-            place(frontier.leads_to_goal_from_x_m),
-            frontier.leads_to_goal_nodes
-        ));
-        if !frontier.refusals.is_empty() {
-            sheet.line(format_args!("what refuses the hops out of there: {}", ranked(&frontier.refusals)));
-        }
-        if let Some(miss) = &frontier.nearest_miss {
-            sheet.line(format_args!(
-                "nearest miss, x = {} to {} m: {}",
-                place(miss.from_x_m),
-                place(miss.to_x_m),
-                binding_line(&miss.binding)
-            ));
-        }
-        if answer.proof.is_none() {
-            sheet.line(format_args!(
-                "more points per segment may find a path: this is no proof that there is none; {} looks for one",
-                means.proof
-            ));
-        }
-    }
+    frontier_lines(&mut sheet, answer, means);
     sheet.0
+}
+
+/// The lines of the frontier, where the search stopped.
+fn frontier_lines(sheet: &mut Sheet, answer: &CheckAnswer, means: FurtherMeans<'_>) {
+    let Some(frontier) = &answer.frontier else { return };
+    sheet.line(format_args!(
+        "from the start one gets to x = {} m ({} nodes); the goal can be reached from x = {} m ({} nodes)",
+        place(frontier.reached_x_m),
+        frontier.reached_nodes,
+        place(frontier.leads_to_goal_from_x_m),
+        frontier.leads_to_goal_nodes
+    ));
+    if !frontier.refusals.is_empty() {
+        sheet.line(format_args!("what refuses the hops out of there: {}", ranked(&frontier.refusals)));
+    }
+    if let Some(miss) = &frontier.nearest_miss {
+        sheet.line(format_args!(
+            "nearest miss, x = {} to {} m: {}",
+            place(miss.from_x_m),
+            place(miss.to_x_m),
+            binding_line(&miss.binding)
+        ));
+    }
+    if answer.proof.is_none() {
+        sheet.line(format_args!(
+            "more points per segment may find a path: this is no proof that there is none; {} looks for one",
+            means.proof
+        ));
+    }
 }
 
 /// What a count of hops over nodes is worth: it is at most that many, and no path takes fewer than the bound.

@@ -21,7 +21,7 @@ pub(super) enum JourneyPath {
     /// Along a transect.
     Transect(Box<Searched>),
     /// A free route: with its answer and its path.
-    Free(Box<Searched>, Box<CheckAnswer>, Option<HopPath>),
+    Free(Box<Searched>, Box<CheckAnswer>, Option<Box<HopPath>>),
     /// A mission that drives.
     Travel(Box<TravelPlanned>),
     /// A mission over targets.
@@ -43,7 +43,7 @@ impl JourneyPath {
         if case.scenario.route == Route::Free {
             let (route, searched) = route_with_success(case, progress)?;
             let searched = Searched { objective: route.check.objective.clone(), ..searched };
-            return Ok(Self::Free(Box::new(searched), Box::new(route.check), route.path));
+            return Ok(Self::Free(Box::new(searched), Box::new(route.check), route.path.map(Box::new)));
         }
         let searched = journey::search(&case.hop_test(), case.ends()?, case, progress)?;
         Ok(Self::Transect(Box::new(searched)))
@@ -107,7 +107,7 @@ impl JourneyPath {
         let searched = match self {
             Self::Travel(_) => return None,
             Self::Targets(planned) => return planned.path().cloned(),
-            Self::Free(_, _, path) => return path.clone(),
+            Self::Free(_, _, path) => return path.as_deref().cloned(),
             Self::Transect(searched) => searched,
         };
         let Outcome::Path { legs, .. } = &searched.found.outcome else { return None };

@@ -1363,10 +1363,10 @@ fn desk() -> Desk {
         .collect::<Vec<_>>()
         .join("\n");
     desk.write("light_legs.toml", light);
-    let walk = desk.read("map.toml").replace("goal_m = [15, 12]", "goal_m = [8, 8]\nroute = \"free\"");
+    let walk = desk.read("map.toml").replace("goal_m = [15, 12]", "goal_m = [7, 7]\nroute = \"free\"");
     desk.write(
         "legs.toml",
-        format!("[robot]\nfile = \"light_legs.toml\"\n\n{}", walk.replace("node_spacing_max_m = 1.0", "contacts_max = 30")),
+        format!("[robot]\nfile = \"light_legs.toml\"\n\n{}", walk.replace("node_spacing_max_m = 1.0", "contacts_max = 60")),
     );
     desk.write("one_leg.toml", include_str!("../../data/robots/one_leg.toml"));
     desk.write("area.geojson", r#"{ "type": "Polygon", "coordinates": [[[0, 0], [12, 0], [12, 12], [0, 12], [0, 0]]] }"#);

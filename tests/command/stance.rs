@@ -120,7 +120,7 @@ fn a_robot_with_legs_is_planned_from_stance_to_stance_and_tried() {
 #[test]
 fn what_is_not_answered_for_legs_is_refused() {
     let scenario = "data/mesh_scenarios/three_legs.toml";
-    for command in [&["run", scenario, "-o", "out"][..], &["check", scenario], &["map", scenario]] {
+    for command in [&["check", scenario][..], &["map", scenario]] {
         let (status, stdout, stderr) = chta(root(), command);
         assert_eq!((status, stdout.as_str()), (2, ""), "{command:?}");
         assert!(stderr.contains("robot.file is") && stderr.contains("answers for a point alone"), "{command:?}: {stderr}");
@@ -144,7 +144,7 @@ fn the_commands_of_the_document_run() {
     assert!(commands.len() >= 4, "{commands:?}");
     for command in commands {
         let mut words: Vec<String> = command.split_whitespace().map(str::to_owned).collect();
-        for option in ["--plot", "--mobility", "-o"] {
+        for option in ["--plot", "--plot-postures", "--mobility", "-o"] {
             if let Some(at) = words.iter().position(|word| word == option) {
                 let file = folder.path().join(&words[at + 1]);
                 words[at + 1] = file.display().to_string();
@@ -176,7 +176,7 @@ fn a_run_of_a_robot_with_joints_has_its_postures_and_what_the_hops_ask_of_them()
         }
         for push in ["landing", "takeoff"].iter().filter_map(|key| stance.get(*key)) {
             for foot in push["feet"].as_array().unwrap() {
-                assert!(foot["effort_share"].as_f64().unwrap() > 0.0 && foot["contact_s"].as_f64().unwrap() >= 0.0, "{foot}");
+                assert!(foot["effort_share"].as_f64().unwrap() >= 0.0 && foot["contact_s"].as_f64().unwrap() >= 0.0, "{foot}");
             }
         }
     }

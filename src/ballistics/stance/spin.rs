@@ -125,7 +125,9 @@ fn least_spin(footholds: &[Foothold], velocity_m_s: Vector3<f64>) -> Option<(Bou
     }
     // The bounds of one number may pass each other by what the force is missing.
     let scale = speed_m_s * cone.arm_m;
-    forces.iter_mut().for_each(|force| *force *= speed_m_s);
+    for force in &mut forces {
+        *force *= speed_m_s;
+    }
     Some((Bounds { lower: lower.min(upper) * scale, upper: upper * scale }, forces))
 }
 

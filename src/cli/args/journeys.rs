@@ -297,7 +297,7 @@ pub(crate) struct SimulateArgs {
     /// after each planned hop
     #[arg(long, value_name = "FILE", conflicts_with_all = ["experiment", "compare"])]
     pub(crate) density: Option<PathBuf>,
-    /// Area (GeoJSON polygons or mask on the map) whose share of the trials' ends is stated, beside --density
+    /// Area (GeoJSON polygons or mask on the map) whose share of the trials' ends is stated, beside --density [default: none]
     #[arg(long, value_name = "FILE", requires = "density")]
     pub(crate) within: Option<PathBuf>,
     #[command(flatten)]

@@ -181,7 +181,7 @@ pub fn read_layer(path: &Path, rule: LayerRule, coordinates: Option<&CoordinateS
         let name = rule.name;
         return Err(failed(format!(
             "the cell in row {}, column {} has {value}, expected no negative value, for layer.{name} has a cost, and what adds up is never \
-             negative; shift the values (gdal_calc -A in.tif --calc='A-A.min()' --outfile out.tif), or set them to 0",
+             negative; shift the values until the least is 0 (gdal_calc.py), or set the negative ones to 0",
             row + 1,
             col + 1
         )));

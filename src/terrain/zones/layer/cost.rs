@@ -83,7 +83,9 @@ impl Layer {
                 mean += (end - begin) * self.greatest_at([0, 1].map(|axis| track.from[axis] + middle * track.by[axis]));
                 begin = end;
             }
-            borders.iter_mut().for_each(|border| border.pass(begin));
+            for border in &mut borders {
+                border.pass(begin);
+            }
         }
         mean * (to - from).norm()
     }
