@@ -12,7 +12,7 @@
 //!
 //! Source: Campana and others 2016, section 5.
 
-use nalgebra::{Point3, UnitQuaternion, Vector3};
+use nalgebra::{Point3, Vector3};
 
 use super::Hop;
 use crate::{
@@ -107,9 +107,8 @@ impl<'a> StanceFlight<'a> {
             return *self.ends[1].pose();
         }
         let fall = Vector3::new(0.0, 0.0, -0.5 * self.ground.mesh().envelope().gravity_m_s2() * time_s * time_s);
-        let [from, to] = self.ends.map(|stance| stance.pose().turn);
-        let turn = (to * from.inverse()).scaled_axis() * (time_s / self.time_s);
-        Pose { root_m: self.from_m + self.liftoff_m_s * time_s + fall, turn: UnitQuaternion::from_scaled_axis(turn) * from }
+        let turn = self.ends[0].pose().turned_towards(self.ends[1].pose(), time_s / self.time_s);
+        Pose { root_m: self.from_m + self.liftoff_m_s * time_s + fall, turn }
     }
 
     /// The velocity of the root at take-off, and the reverse of that at landing, m/s: the pushes.

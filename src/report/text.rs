@@ -359,7 +359,7 @@ fn frontier_lines(sheet: &mut Sheet, answer: &CheckAnswer, means: FurtherMeans<'
     }
     if answer.proof.is_none() {
         sheet.line(format_args!(
-            "more points per segment may find a path: this is no proof that there is none; {} looks for one",
+            "more points per segment may find a path, and not finding one over these nodes proves nothing; {} looks for a proof",
             means.proof
         ));
     }

@@ -7,7 +7,7 @@
 
 use std::ops::ControlFlow;
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
 use super::{Pose, Stance, StanceBuffers, StanceGround};
 use crate::{
@@ -201,7 +201,7 @@ impl StanceGround {
         let trunks = shares.windows(2).map(|piece| {
             let grown_m = 0.5 * corner_m * turn * (piece[1] - piece[0]);
             most_m = most_m.max(grown_m);
-            let turn = turned(from, to, f64::midpoint(piece[0], piece[1]));
+            let turn = from.turned_towards(to, f64::midpoint(piece[0], piece[1]));
             let framed = |direction: Vector3<f64>| course.plane.turned(turn * direction);
             let boxes = parts.iter().map(|part| {
                 let half = part.half_m.add_scalar(grown_m);
@@ -235,9 +235,4 @@ fn shares_of(turn: f64) -> Vec<f64> {
         shares.push(pair[1]);
     }
     shares
-}
-
-/// How the trunk is turned at a share of the flight: evenly, the shorter way around.
-pub(super) fn turned(from: &Pose, to: &Pose, share: f64) -> UnitQuaternion<f64> {
-    from.turn.try_slerp(&to.turn, share, 1e-9).unwrap_or(if share < 0.5 { from.turn } else { to.turn })
 }

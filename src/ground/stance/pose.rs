@@ -46,6 +46,12 @@ impl Pose {
         Point3::from(self.turn.inverse_transform_vector(&(point - self.root_m)))
     }
 
+    /// How a trunk is turned that turns evenly, the shorter way around, from this pose to another: after a share of the way, from 0 to 1. Between opposite
+    /// directions, where no way is shorter, it is turned as at the nearer end.
+    pub fn turned_towards(&self, to: &Self, share: f64) -> UnitQuaternion<f64> {
+        self.turn.try_slerp(&to.turn, share, 1e-9).unwrap_or(if share < 0.5 { self.turn } else { to.turn })
+    }
+
     /// The up axis.
     pub fn up(&self) -> Vector3<f64> {
         self.turn * Vector3::z()
