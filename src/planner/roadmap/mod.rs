@@ -37,3 +37,5 @@ pub use walks::RoadmapWalks;
 
 #[cfg(test)]
 pub(crate) mod tests;
+#[cfg(test)]
+mod walk_tests;
