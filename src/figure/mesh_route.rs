@@ -62,6 +62,8 @@ pub struct MeshRouteFigure<'a> {
     pub goal: Point3<f64>,
     /// The paths, the first one in front; none where the goal is not reached.
     pub routes: Vec<MeshRouteLine<'a>>,
+    /// What is walked between the hops of the path, along the ground; empty for a machine that hops alone.
+    pub walks: Vec<Vec<Point3<f64>>>,
     /// Without a path: the contact nearest to the goal that was reached.
     pub nearest: Option<Point3<f64>>,
 }
@@ -74,6 +76,8 @@ const MARGIN: f64 = 0.3;
 const MOST_NUMBERED: usize = 12;
 /// The colours of paths.
 const COLOURS: [plotters::style::RGBColor; 6] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY];
+/// The pen of what is walked.
+const WALKED: Pen = Pen { colour: VERMILION, width_mm: 0.6 };
 const WIDTH_MM: f64 = 0.4;
 const CASING_MM: f64 = 1.0;
 const DASHES_MM: (f64, f64) = (1.1, 0.9);
@@ -133,6 +137,9 @@ impl MeshRouteFigure<'_> {
             let name = if route.name.is_empty() { "path" } else { route.name };
             found.push((Swatch::Line(Self::pen(number)), format!("{name}, {} hops", route.path.hops.len())));
         }
+        if !self.walks.is_empty() {
+            found.push((Swatch::Line(WALKED), "walked".to_owned()));
+        }
         if !self.routes.is_empty() {
             let pen = hidden(Self::pen(0));
             found.push((Swatch::Dashed(pen, DASHES_MM.0, DASHES_MM.1), "behind a facet".to_owned()));
@@ -146,7 +153,8 @@ impl MeshRouteFigure<'_> {
     /// The part of the mesh around the paths, and the paths.
     fn around(&self, flights: &[Vec<Vec<Point3<f64>>>]) -> Result<Around, FigureError> {
         let mut paths = Around { low: self.start.coords, high: self.start.coords };
-        for point in flights.iter().flatten().flatten().chain([&self.goal]).chain(&self.nearest) {
+        for point in flights.iter().flatten().flatten().chain(self.walks.iter().flatten()).chain([&self.goal]).chain(&self.nearest)
+        {
             (paths.low, paths.high) = (paths.low.inf(&point.coords), paths.high.sup(&point.coords));
         }
         let bounds = self.mesh.bounds();
@@ -169,6 +177,9 @@ impl MeshRouteFigure<'_> {
         let ends = [&self.start, &self.goal].into_iter().chain(&self.nearest);
         let points = corners.chain(flights.iter().flatten().flatten()).chain(ends);
         let oblique = Oblique::around(self.mesh, self.seen_from, (points, (around.high - around.low).amax()), None, top_mm);
+        for walk in &self.walks {
+            draw_flight(sheet, &oblique, walk, WALKED);
+        }
         for (number, route) in flights.iter().enumerate().rev() {
             let pen = Self::pen(number);
             for hop in route {
@@ -215,17 +226,23 @@ impl MeshRouteFigure<'_> {
         let highest_m = self.routes.iter().flat_map(|route| &route.path.hops).map(|hop| hop.apex_z_m);
         let highest_m = highest_m.chain([self.start.z, self.goal.z]).fold(f64::NEG_INFINITY, f64::max);
         let over_m = 0.02 * (around.high.z - around.low.z);
-        let paths = self.routes.iter().enumerate().map(|(number, route)| {
-            let places = route.path.hops.iter().map(|hop| hop.landing.point_m.xy());
-            (std::iter::once(self.start.xy()).chain(places).collect(), Self::pen(number))
-        });
+        let mut paths: Vec<(Vec<_>, Pen)> = self.walks.iter().map(|walk| (walk.iter().map(Point3::xy).collect(), WALKED)).collect();
+        for (number, route) in self.routes.iter().enumerate() {
+            let ends = |hop: &Hop| [hop.takeoff.point_m.xy(), hop.landing.point_m.xy()];
+            if self.walks.is_empty() {
+                let landings = route.path.hops.iter().map(|hop| ends(hop)[1]);
+                paths.push((std::iter::once(self.start.xy()).chain(landings).collect(), Self::pen(number)));
+            } else {
+                paths.extend(route.path.hops.iter().map(|hop| (ends(hop).into(), Self::pen(number))));
+            }
+        }
         let corner = |at: Vector3<f64>| MapPoint::new(at.x, at.y);
         let plan = MeshPlan {
             mesh: self.mesh,
             bounds: MapBounds { min: corner(around.low), max: corner(around.high) },
             cut_z_m: self.cut_z_m.unwrap_or(highest_m + over_m),
             low_z_m: around.low.z,
-            paths: paths.collect(),
+            paths,
             start: self.start.xy(),
             goal: self.goal.xy(),
             goal_hops: self.routes.first().map(|route| route.path.hops.len() as u64),

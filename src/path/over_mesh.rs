@@ -27,16 +27,16 @@ pub fn path_over_mesh(ground: &MeshGround, contacts: &[&MeshContact], arcs: &[Ar
     Some(HopPath::of_hops(hops, ground.envelope().hopper()))
 }
 
-/// The hops of a robot with legs along arcs from each of its stances to the next; `None` as [`path_over_mesh`].
-pub fn path_over_stances(ground: &StanceGround, stances: &[&Stance], arcs: &[Arc]) -> Option<HopPath> {
-    if stances.len() != arcs.len() + 1 {
+/// The hops of a robot with legs along arcs, each between two of its stances, from which it may walk to the next pair; `None` where there are not as
+/// many arcs as pairs, or where a hop is not feasible.
+pub fn path_over_stances(ground: &StanceGround, pairs: &[[&Stance; 2]], arcs: &[Arc]) -> Option<HopPath> {
+    if pairs.len() != arcs.len() {
         return None;
     }
     let envelope = ground.mesh().envelope();
     let mut hops = Vec::with_capacity(arcs.len());
     let mut along_m = 0.0;
-    for (pair, arc) in stances.windows(2).zip(arcs) {
-        let ends = [pair[0], pair[1]];
+    for (&ends, arc) in pairs.iter().zip(arcs) {
         let set = ground.takeoff_set(ends[0], ends[1])?;
         let heading = set.course().plane.heading;
         let known = Known {

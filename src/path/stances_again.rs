@@ -102,13 +102,13 @@ pub enum StanceFault {
     },
 }
 
-/// Flies a path from stance to stance again; the violations, hop by hop, empty if it holds.
+/// Flies the hops of a path again, each between its two stances; the violations, hop by hop, empty if it holds.
 ///
 /// A robot that is a point has no feet and no trunk to look at: [`execute_over_mesh`](super::execute_over_mesh) flies it.
-pub fn flown_by_stances(ground: &StanceGround, stances: &[&Stance], path: &HopPath) -> Vec<StanceViolation> {
-    let hops = path.hops.iter().zip(stances.windows(2)).enumerate();
+pub fn flown_by_stances(ground: &StanceGround, pairs: &[[&Stance; 2]], path: &HopPath) -> Vec<StanceViolation> {
+    let hops = path.hops.iter().zip(pairs).enumerate();
     hops.flat_map(|(number, (hop, pair))| {
-        let faults = faults(ground, [pair[0], pair[1]], hop);
+        let faults = faults(ground, *pair, hop);
         faults.into_iter().map(move |fault| StanceViolation { hop: number + 1, fault })
     })
     .collect()

@@ -139,8 +139,8 @@ fn windows_of_the_trunk_are_free_and_none_is_missed_between_equal_poses() {
                 for window in lofts.iter().take(2) {
                     let loft = window.lower + (window.upper - window.lower) * draw.uniform(0.0, 1.0);
                     let arc = Arc::new(sight, loft, 1.62);
-                    let path = path_over_stances(&ground, &[from, to], &[arc]).unwrap();
-                    let faults = flown_by_stances(&ground, &[from, to], &path);
+                    let path = path_over_stances(&ground, &[[from, to]], &[arc]).unwrap();
+                    let faults = flown_by_stances(&ground, &[[from, to]], &path);
                     assert!(faults.is_empty(), "{faults:?}");
                     flown += 1;
                 }

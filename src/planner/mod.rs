@@ -39,6 +39,7 @@ mod surface_legs;
 mod table_hops;
 mod tour;
 mod travel;
+mod walking_stances;
 
 pub use amount::{Amount, Amounts};
 pub use bounds::LeastAmounts;
@@ -63,6 +64,7 @@ pub use travel::{
     Mission, MissionFront, MissionMove, MissionPath, MissionQuestion, MissionWork, Toward, Travel, TravelField, front_of_missions,
     travel, travel_field,
 };
+pub use walking_stances::WalkingStances;
 
 #[cfg(test)]
 mod layer_cost_tests;

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{FootRecord, JointReachRecord, MeshPlanAnswer, PoseRecord, PushRecord, mesh_plan_text, text::Sheet};
+use super::{FootRecord, JointReachRecord, LegsWalkRecord, MeshPlanAnswer, PoseRecord, PushRecord, mesh_plan_text, text::Sheet};
 use crate::{
     ground::{LimbOutcome, Stance, StanceGround},
     path::{HopPath, StanceFlight},
@@ -34,6 +34,9 @@ pub struct LegsPlanAnswer {
     pub plan: MeshPlanAnswer,
     /// The stances of the path, from start to goal; without a path those two.
     pub stances: Vec<StanceRecord>,
+    /// How it walks, and its moves from stance to stance; absent for a robot that hops alone, whose hops lead from each stance to the next.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub walk: Option<LegsWalkRecord>,
 }
 
 /// The ground that a robot with legs stands on.
@@ -115,12 +118,13 @@ pub struct StanceRecord {
 }
 
 impl StanceRecord {
-    /// Of the stances of a path, with what its hops ask of them; of stances alone without a path.
-    pub fn all_of(ground: &StanceGround, stances: &[&Stance], path: Option<&HopPath>) -> Vec<Self> {
+    /// Of the stances of a path, with what its hops ask of them, each of which leads from the stance of this number to the next one; of stances alone
+    /// without a path.
+    pub fn all_of(ground: &StanceGround, stances: &[&Stance], path: Option<(&[usize], &HopPath)>) -> Vec<Self> {
         let mut records: Vec<Self> = stances.iter().map(|stance| Self::new(ground, stance)).collect();
-        let hops = path.map_or(&[][..], |path| &path.hops);
-        for (number, (hop, ends)) in hops.iter().zip(stances.windows(2)).enumerate() {
-            let flight = StanceFlight::new(ground, [ends[0], ends[1]], hop);
+        for (&number, hop) in path.into_iter().flat_map(|(takeoffs, path)| takeoffs.iter().zip(&path.hops)) {
+            let ends = [stances[number], stances[number + 1]];
+            let flight = StanceFlight::new(ground, ends, hop);
             records[number].takeoff = PushRecord::of_hop(ground, &flight, ends[0], Contact::Takeoff);
             records[number + 1].landing = PushRecord::of_hop(ground, &flight, ends[1], Contact::Landing);
         }
@@ -170,5 +174,7 @@ pub fn legs_plan_text(answer: &LegsPlanAnswer) -> String {
             }
         }
     }
-    sheet.into_text() + &mesh_plan_text(&answer.plan).replace("these contacts", "these stances").replace("contacts (", "stances (")
+    let hops = mesh_plan_text(&answer.plan).replace("these contacts", "these stances").replace("contacts (", "stances (");
+    let walk = answer.walk.as_ref().map(|walk| format!("\n{}", walk.text()));
+    sheet.into_text() + &hops + walk.as_deref().unwrap_or_default()
 }

@@ -18,6 +18,7 @@ mod legs_map_answer;
 mod legs_plan_answer;
 mod legs_simulate_answer;
 mod legs_trade_answer;
+mod legs_walk_record;
 mod limit_counts;
 mod limit_pair;
 mod map_answer;
@@ -78,6 +79,7 @@ pub use legs_map_answer::{LegsGoalRecord, LegsMapAnswer, LegsReachRecord, LimbNo
 pub use legs_plan_answer::{LegsGroundKind, LegsGroundRecord, LegsPlanAnswer, RefusedPosesRecord, StanceRecord, legs_plan_text};
 pub use legs_simulate_answer::{EndedInHopRecord, LegsOutcomeRecord, LegsSimulateAnswer, LegsTrialsRecord, legs_simulate_text};
 pub use legs_trade_answer::{LegsTradeAnswer, LegsTradeRow};
+pub use legs_walk_record::LegsWalkRecord;
 pub use limit_counts::LimitCounts;
 pub use limit_pair::LimitPair;
 pub use map_answer::{

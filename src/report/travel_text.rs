@@ -57,6 +57,18 @@ pub fn travel_text(answer: &TravelAnswer) -> String {
     sheet.into_text()
 }
 
+/// The table of legs and the lines of their sums alone.
+pub(super) fn legs_and_totals(legs: &[TravelLegRecord], totals: Option<&TravelTotalsRecord>) -> String {
+    let mut sheet = Sheet::default();
+    if !legs.is_empty() {
+        legs_table(&mut sheet, legs);
+    }
+    if let Some(totals) = totals {
+        totals_lines(&mut sheet, totals);
+    }
+    sheet.into_text()
+}
+
 /// By what it travels, in words.
 fn means(answer: &TravelAnswer) -> &'static str {
     match (answer.travel.drives(), answer.travel.hops()) {

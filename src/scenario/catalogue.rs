@@ -397,7 +397,7 @@ pub const CATALOGUE: [Key; 128] = [
         "drive",
         "neighbours",
         Kind::Count { min: 8, max: 32 },
-        "to how many nodes about a node it drives in straight lines: 8, 16 or 32; absent: 16",
+        "to how many nodes about a node it drives in straight lines, of a robot with legs to how many of its nearest stances it walks: 8, 16 or 32; absent: 16",
     ),
     key("drive", "turn_s_per_deg", FROM_ZERO, "time to turn on the spot between straight lines, s for each degree; absent: 0"),
     key(

@@ -38,17 +38,21 @@ pub(super) fn legs(entries: &mut Entries) -> LegsKeys {
     keys
 }
 
-/// Reports what a robot with legs does not do: it neither drives nor visits targets, and leaves no layer for a while.
+/// Reports what a robot with legs does not do: it takes no time to turn as it walks, visits no targets, and leaves no layer for a while.
 pub(super) fn check(entries: &mut Entries, legs: &LegsKeys, (drives, visits): (bool, bool), layers: &[LayerKeys]) {
     if legs.file.is_none() {
         return;
     }
+    let turns = entries.number("drive", "turn_s_per_deg").is_some_and(|turn| turn > 0.0);
     let mut refuse = |what: &str, help: &str| {
-        let message = format!("robot.file names a robot with legs, which hops from stance to stance, beside {what}");
+        let message = format!("robot.file names a robot with legs, which goes from stance to stance, beside {what}");
         entries.problem(("robot", "file"), ProblemKind::Conflict, message, help);
     };
-    if drives {
-        refuse("[drive], the wheels of a rover", "remove [drive], or robot.file for a hopper that is a point");
+    if drives && turns {
+        refuse(
+            "drive.turn_s_per_deg, a price of turns between straight lines",
+            "remove drive.turn_s_per_deg, or robot.file for a rover that hops",
+        );
     }
     if visits {
         refuse("[mission], the targets of a hopper", "remove [mission], or robot.file for a hopper that is a point");

@@ -5,12 +5,12 @@ use std::path::Path;
 use nalgebra::Point3;
 
 use super::{
-    Defect, LegsRouteError, MeshRouteError,
+    Defect, LegsRouteError, LegsRouteQuestion, MeshRouteError,
     legs_ends::{DemGroundOfLegs, dem_ground_of_legs, planned_map},
     legs_route::assumptions,
     map::{MapStudyError, NamedPlace, Spot, spot},
     nodes::{coarse_map_nodes, level_hop_of_m},
-    stance::{best_stance, with_robot},
+    stance::{best_stance, pairs_of, with_robot},
 };
 use crate::{
     ballistics::Arc,
@@ -129,6 +129,7 @@ impl PreparedLegsMap {
     /// [`LegsMapError`], also if the map needs more memory than the question allows.
     pub fn new(question: &LegsMapQuestion<'_>) -> Result<Self, LegsMapError> {
         let LegsMapQuestion { scenario, base, dem: file, stride, .. } = question;
+        LegsRouteQuestion { scenario, base }.of_hops_alone("maps")?;
         let robot_file = base.join(scenario.legs.file.as_deref().unwrap_or_else(|| Path::new("")));
         let read = read_robot(&robot_file).map_err(LegsRouteError::from)?;
         let mut scenario = Scenario { hopper: with_robot(&scenario.hopper, &read.robot), ..(*scenario).clone() };
@@ -263,8 +264,9 @@ impl PreparedLegsMap {
             let (_, loft) = scenario.search.takeoff.among(sight, windows.iter().copied()).ok_or_else(lost)?;
             arcs.push(Arc::new(sight, loft, g));
         }
-        let path = path_over_stances(&self.ground, &stances, &arcs).ok_or_else(lost)?;
-        let violations = flown_by_stances(&self.ground, &stances, &path);
+        let pairs = pairs_of(&stances);
+        let path = path_over_stances(&self.ground, &pairs, &arcs).ok_or_else(lost)?;
+        let violations = flown_by_stances(&self.ground, &pairs, &path);
         if violations.is_empty() { Ok(path) } else { Err(LegsRouteError::Defect { violations }.into()) }
     }
 

@@ -6,11 +6,11 @@ use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
 use super::{
-    LegsRouteError, MeshChecked, MeshReadBackError, ReadBackError,
+    LegsRouteError, LegsRouteQuestion, MeshChecked, MeshReadBackError, ReadBackError,
     legs_ends::{LegsEnds, legs_ends, planned_map},
     mesh_read_back::{hop_of, rows_of},
     read_back::key,
-    stance::with_robot,
+    stance::{pairs_of, with_robot},
 };
 use crate::{
     ground::{NoStance, Pose, Stance, StanceGround, StanceMap},
@@ -36,6 +36,7 @@ pub(super) fn check_over_stances(
     document: &Value,
     inputs: &[InputFile],
 ) -> Result<MeshChecked, MeshReadBackError> {
+    LegsRouteQuestion { scenario, base }.of_hops_alone("checks of results")?;
     let rows = rows_of(document, inputs, &WITH_PATH)?;
     let records: Vec<StanceRecord> = key(document, "stances")?;
     if records.len() != rows.len() + 1 {
@@ -70,7 +71,9 @@ pub(super) fn check_over_stances(
     if violations.is_empty() {
         let stances: Vec<&Stance> = stood.iter().flatten().collect();
         violations.extend(
-            flown_by_stances(&ground, &stances, &path).iter().map(|fault| broken(fault.hop, fault.limit(), fault.to_string())),
+            flown_by_stances(&ground, &pairs_of(&stances), &path)
+                .iter()
+                .map(|fault| broken(fault.hop, fault.limit(), fault.to_string())),
         );
         for (number, (hop, pair)) in path.hops.iter().zip(stances.windows(2)).enumerate() {
             let refused = pushes(hop, [pair[0], pair[1]]).into_iter().find_map(|(stance, push)| ground.refuses_push(stance, push));

@@ -2,9 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "plot")]
+use nalgebra::Point3;
+
 use super::{
-    MeshRouteError, PipelineError,
+    FreeRouteError, MeshRouteError, PipelineError,
     legs_ends::{LegsEnds, POSTS_MAX, legs_ends, planned_map},
+    legs_walk::Walking,
     mesh_route::{answer, left_out},
     stance::{best_stance, with_robot},
 };
@@ -17,14 +21,19 @@ use crate::{
     path::{HopPath, StanceViolation, flown_by_stances, path_over_stances},
     planner::{
         LabelCap, StanceSampler,
-        roadmap::{ContactSampler, GrownRoadmap, RoadmapPlanner, RoadmapQuestion, grow_roadmap, grow_until_joined},
+        roadmap::{
+            ContactSampler, GrownRoadmap, RoadmapGround, RoadmapLimits, RoadmapPath, RoadmapPlanner, RoadmapQuestion, grow_roadmap,
+            grow_until_joined,
+        },
     },
     progress::{Cancelled, Progress},
     quantity::{MapPoint, format_number},
-    report::{CrsRecord, FootRecord, LegsPlanAnswer, StanceRecord, path_geojson},
+    report::{CrsRecord, FootRecord, LegsPlanAnswer, StanceRecord, mission_geojson, path_geojson},
     scenario::{RobotFileError, Scenario, TerrainSource, read_robot},
     terrain::{MapBounds, MapProjection, OverlaidDem, TerrainError},
 };
+#[cfg(feature = "plot")]
+use crate::{report::TravelLegRecord, terrain::slice};
 
 /// What is asked.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +42,16 @@ pub struct LegsRouteQuestion<'a> {
     pub scenario: &'a Scenario,
     /// The folder that its paths start from.
     pub base: &'a Path,
+}
+
+impl LegsRouteQuestion<'_> {
+    /// The same question, of a robot that hops alone.
+    ///
+    /// # Errors
+    /// [`LegsRouteError::Walks`]: it walks, and this is not answered then; `what`: in the plural, such as `trials`.
+    pub fn of_hops_alone(self, what: &'static str) -> Result<Self, LegsRouteError> {
+        if self.scenario.drives().is_some() { Err(LegsRouteError::Walks { what }) } else { Ok(self) }
+    }
 }
 
 /// Why there is no answer. That there is no path is one.
@@ -91,6 +110,18 @@ pub enum LegsRouteError {
     /// The surface states no friction.
     #[error(transparent)]
     NoFriction(#[from] NoFriction),
+    /// A line that was walked again, or the sums of the moves.
+    #[error(transparent)]
+    Walk(#[from] Box<FreeRouteError>),
+    /// What is not answered for a robot that walks.
+    #[error(
+        "the robot walks, by [drive], and {what} of robots that walk are not made, expected one that hops alone: set drive.travel = \"hop\", or remove \
+         [drive]"
+    )]
+    Walks {
+        /// What, such as `trials`.
+        what: &'static str,
+    },
     /// An end at which the robot cannot stand.
     #[error(
         "the robot cannot stand at the {end}, over ({}, {}, {}) m of the surface, in any of {tried} poses: {refusal}; choose another place, or \
@@ -193,9 +224,10 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
         cap: LabelCap::default(),
     };
     let limits = search.limits();
-    let grown = match search.planner {
-        RoadmapPlanner::Exact => grow_roadmap(&ground, ends, &mut sampler, &asked, limits, progress)?,
-        RoadmapPlanner::Prm => grow_until_joined(&ground, ends, &mut sampler, &asked, limits, progress)?,
+    let walking = Walking::of(scenario, map.as_ref().map(|map| planned_map(map, scenario)));
+    let grown = match &walking {
+        Some(walking) => grown(&walking.over(&ground), (ends, search.planner), &mut sampler, (&asked, limits), progress)?,
+        None => grown(&ground, (ends, search.planner), &mut sampler, (&asked, limits), progress)?,
     };
     let facets = [sampler.contacts().facet_count(), sampler.contacts().turned()];
     let refused = sampler.refused();
@@ -203,12 +235,14 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
         || vec![grown.roadmap.contact(grown.ends.0), grown.roadmap.contact(grown.ends.1)],
         |found| found.contacts.iter().map(|node| grown.roadmap.contact(*node)).collect(),
     );
+    let takeoffs = grown.route.path.as_ref().map(RoadmapPath::takeoffs).unwrap_or_default();
+    let pairs: Vec<[&Stance; 2]> = takeoffs.iter().map(|at| [stances[*at], stances[at + 1]]).collect();
     let path = match &grown.route.path {
         None => None,
-        Some(found) => Some(path_over_stances(&ground, &stances, &found.arcs).ok_or(MeshRouteError::Lost)?),
+        Some(found) => Some(path_over_stances(&ground, &pairs, &found.arcs()).ok_or(MeshRouteError::Lost)?),
     };
     if let Some(path) = &path {
-        let violations = flown_by_stances(&ground, &stances, path);
+        let violations = flown_by_stances(&ground, &pairs, path);
         if !violations.is_empty() {
             return Err(LegsRouteError::Defect { violations });
         }
@@ -216,12 +250,28 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
     }
     warnings.extend(left_out(scenario, grown.end, facets));
     warnings.extend(assumptions(&ground));
+    warnings.extend(walking.as_ref().map(|walking| walking.assumptions(scenario)).unwrap_or_default());
     warnings.extend(without_effect(question.scenario));
-    let gap = grown.route.path.is_none().then(|| grown.roadmap.gap(&ground, grown.ends, progress)).transpose()?;
+    let gap = match &walking {
+        _ if grown.route.path.is_some() => None,
+        Some(walking) => Some(grown.roadmap.gap(&walking.over(&ground), grown.ends, progress)?),
+        None => Some(grown.roadmap.gap(&ground, grown.ends, progress)?),
+    };
     let ends_m = [grown.ends.0, grown.ends.1].map(|node| grown.roadmap.contact(node).pose().root_m);
     let mut plan =
         answer((scenario, ground.mesh()), (given_m, &surface, scale), (&grown, facets, ends_m), (path.as_ref(), gap.as_ref()));
     plan.roadmap.planner = search.planner;
+    let mut walk = None;
+    if let Some(walking) = &walking {
+        // No bound on hops holds where walking joins them.
+        plan.hops_lower_bound = Some(0);
+        let mut record = walking.record(&grown);
+        if let (Some(found), Some(path)) = (&grown.route.path, &path) {
+            let (legs, totals) = walking.moves(&ground, (found, &stances, path), projection.as_ref())?;
+            (record.legs, record.totals) = (legs, Some(totals));
+        }
+        walk = Some(record);
+    }
     let answer = LegsPlanAnswer {
         robot: ground.robot().name().to_owned(),
         cone: ground.cone_kind().name().to_owned(),
@@ -233,11 +283,26 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
             ground.joint_reach(all).into()
         }),
         plan,
-        stances: StanceRecord::all_of(&ground, &stances, path.as_ref()),
+        stances: StanceRecord::all_of(&ground, &stances, path.as_ref().map(|path| (&takeoffs[..], path))),
+        walk,
     };
     warnings.extend(beyond_joints(&answer.stances));
     let robot_files = std::iter::once(file).chain(read.files).collect();
     Ok(LegsRouted { ground, map, projection, grown, path, answer, warnings, robot_files })
+}
+
+/// The roadmap of stances, over which the robot hops alone or also walks.
+fn grown<G: RoadmapGround<Node = Stance>>(
+    ground: &G,
+    (ends, planner): ([Stance; 2], RoadmapPlanner),
+    sampler: &mut StanceSampler<'_>,
+    (asked, limits): (&RoadmapQuestion<'_>, RoadmapLimits),
+    progress: &dyn Progress,
+) -> Result<GrownRoadmap<Stance>, Cancelled> {
+    match planner {
+        RoadmapPlanner::Exact => grow_roadmap(ground, ends, sampler, asked, limits, progress),
+        RoadmapPlanner::Prm => grow_until_joined(ground, ends, sampler, asked, limits, progress),
+    }
 }
 
 impl LegsRouted {
@@ -249,6 +314,10 @@ impl LegsRouted {
     /// The path of its root over a DEM as `GeoJSON`, as [`path_geojson`]; `None` without a path, and over a mesh.
     pub fn geojson(&self) -> Option<String> {
         self.map.as_ref()?;
+        if let Some(walk) = &self.answer.walk {
+            let hops = &self.path.as_ref()?.hops;
+            return mission_geojson(&walk.legs, hops, self.ground.mesh().envelope().gravity_m_s2(), self.projection.as_ref());
+        }
         path_geojson(self.path.as_ref()?, self.ground.mesh().envelope().gravity_m_s2(), self.projection.as_ref())
     }
 
@@ -260,6 +329,26 @@ impl LegsRouted {
 
 #[cfg(feature = "plot")]
 impl LegsRouted {
+    /// The lines that are walked, along the ground under the root.
+    fn walked(&self) -> Vec<Vec<Point3<f64>>> {
+        let legs = self.answer.walk.iter().flat_map(|walk| &walk.legs);
+        let lines = legs.filter_map(|leg| {
+            let TravelLegRecord::Drive(leg) = leg else { return None };
+            let [from, to] = [leg.takeoff_m, leg.landing_m].map(|[x, y, _]| MapPoint::new(x, y));
+            let line = slice(self.map.as_ref()?.dem(), from, to).ok()?;
+            Some(
+                line.points
+                    .iter()
+                    .map(|point| {
+                        let at = from + line.heading * point.x_m;
+                        Point3::new(at.x, at.y, point.z_m)
+                    })
+                    .collect(),
+            )
+        });
+        lines.collect()
+    }
+
     /// The picture of the path of its root: an oblique view, a plan view and the table of its hops.
     ///
     /// # Errors
@@ -272,7 +361,12 @@ impl LegsRouted {
             || format!("{robot}: no path over these {stances} stances"),
             |path| {
                 let (hops, time_s) = (path.hops.len(), path.totals.flight_time_s);
-                format!("{robot}: at most {hops} hops over these {stances} stances, {time_s:.2} s in flight")
+                let walked = self.answer.walk.as_ref().and_then(|walk| walk.totals);
+                let walked = walked.map(|walk| format!(", {:.2} m walked in {} stretches", walk.drive_length_m, walk.drive_legs));
+                format!(
+                    "{robot}: at most {hops} hops over these {stances} stances, {time_s:.2} s in flight{}",
+                    walked.unwrap_or_default()
+                )
             },
         );
         let scenario = Scenario { hopper: *self.ground.mesh().envelope().hopper(), ..scenario.clone() };
@@ -288,6 +382,7 @@ impl LegsRouted {
                 .iter()
                 .map(|path| MeshRouteLine { name: "", path, gravity_m_s2: self.ground.mesh().envelope().gravity_m_s2() })
                 .collect(),
+            walks: self.walked(),
             nearest: self.answer.plan.gap.as_ref().map(|gap| gap.nearest_m.into()),
         })
     }

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    LegsRouteError, MeshRouteError,
+    LegsRouteError, LegsRouteQuestion, MeshRouteError,
     legs_ends::{LegsEnds, legs_ends, planned_map},
-    stance::{best_stance, with_robot},
+    stance::{best_stance, pairs_of, with_robot},
 };
 use crate::{
     ballistics::stance::ConeKind,
@@ -56,6 +56,7 @@ const POSES: u32 = 400;
 /// [`LegsRouteError`].
 pub fn legs_trade(question: &LegsTradeQuestion<'_>, progress: &dyn Progress) -> Result<LegsTraded, LegsRouteError> {
     let LegsTradeQuestion { scenario, base, robots, cones } = question;
+    LegsRouteQuestion { scenario, base }.of_hops_alone("trades")?;
     let own = base.join(scenario.legs.file.as_deref().unwrap_or_else(|| Path::new("")));
     let robots = if robots.is_empty() { std::slice::from_ref(&own) } else { &robots[..] };
     let cones = if cones.is_empty() { std::slice::from_ref(&scenario.legs.cone) } else { &cones[..] };
@@ -175,8 +176,9 @@ fn best_path(scenario: &Scenario, ground: &StanceGround, roadmap: &Roadmap<Stanc
     let route = roadmap.route(ground, (0, 1), &asked)?;
     let Some(found) = route.path.filter(|_| route.within) else { return Ok(None) };
     let stances: Vec<&Stance> = found.contacts.iter().map(|node| roadmap.contact(*node)).collect();
-    let path = path_over_stances(ground, &stances, &found.arcs).ok_or(MeshRouteError::Lost)?;
-    let violations = flown_by_stances(ground, &stances, &path);
+    let pairs = pairs_of(&stances);
+    let path = path_over_stances(ground, &pairs, &found.arcs()).ok_or(MeshRouteError::Lost)?;
+    let violations = flown_by_stances(ground, &pairs, &path);
     if violations.is_empty() {
         Ok(Some((path.hops.len() as u64, path.totals.flight_time_s)))
     } else {

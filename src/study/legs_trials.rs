@@ -94,7 +94,7 @@ fn mission(routed: &LegsRouted, scenario: &Scenario) -> Result<Option<LegsMissio
         whole,
         planning: planning.clone(),
         stances: found.contacts.iter().map(|node| roadmap.contact(*node).clone()).collect(),
-        arcs: found.arcs.clone(),
+        arcs: found.arcs(),
         aims,
         takeoff: scenario.search.takeoff,
     }))

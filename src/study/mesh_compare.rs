@@ -82,6 +82,7 @@ impl Comparison<MeshRouted> {
             start,
             goal,
             routes: self.compared.iter().filter_map(route).collect(),
+            walks: Vec::new(),
             nearest: None,
         })
     }

@@ -69,6 +69,7 @@ impl MeshRouted {
             start,
             goal,
             routes: self.path.iter().map(|path| MeshRouteLine { name: "", path, gravity_m_s2 }).collect(),
+            walks: Vec::new(),
             nearest: self.answer.gap.as_ref().map(|gap| gap.nearest_m.into()),
         })
     }

@@ -202,7 +202,7 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
 /// The hops of a path of the roadmap.
 fn hops_of_path(ground: &MeshGround, grown: &GrownRoadmap, found: &RoadmapPath) -> Result<HopPath, MeshRouteError> {
     let contacts: Vec<&MeshContact> = found.contacts.iter().map(|node| grown.roadmap.contact(*node)).collect();
-    path_over_mesh(ground, &contacts, &found.arcs).ok_or(MeshRouteError::Lost)
+    path_over_mesh(ground, &contacts, &found.arcs()).ok_or(MeshRouteError::Lost)
 }
 
 /// The front of hops against an amount over the contacts of the roadmap. `planned`: the path of the plan.

@@ -51,6 +51,7 @@ mod legs_read_back;
 mod legs_route;
 mod legs_trade;
 mod legs_trials;
+mod legs_walk;
 pub mod map;
 mod measured;
 mod mesh_compare;

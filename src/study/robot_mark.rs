@@ -66,10 +66,11 @@ impl LegsRouted {
     pub fn postures_picture(&self, scenario: &Scenario, first: usize) -> Option<Result<Picture, FigureError>> {
         let (path, found) = (self.path.as_ref()?, self.grown.route.path.as_ref()?);
         let stances: Vec<&Stance> = found.contacts.iter().map(|node| self.grown.roadmap.contact(*node)).collect();
-        let hops = path.hops.iter().zip(stances.windows(2)).enumerate().skip(first.saturating_sub(1)).take(POSTURE_ROWS_MAX);
+        let pairs = found.takeoffs().into_iter().map(|at| [stances[at], stances[at + 1]]);
+        let hops = path.hops.iter().zip(pairs).enumerate().skip(first.saturating_sub(1)).take(POSTURE_ROWS_MAX);
         let rows: Vec<PostureRow> = hops
             .map(|(number, (hop, ends))| {
-                let flight = StanceFlight::new(&self.ground, [ends[0], ends[1]], hop);
+                let flight = StanceFlight::new(&self.ground, ends, hop);
                 let heading = crate::report::heading_of(hop.heading_deg);
                 let postures = flight.postures().map(|posture| PostureMark {
                     name: match posture.kind {

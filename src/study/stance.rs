@@ -315,6 +315,11 @@ fn nearer(known: NoStance, other: NoStance) -> NoStance {
     if rank(&other) > rank(&known) { other } else { known }
 }
 
+/// The stances of a way without walking, two and two: one hop from each to the next.
+pub(super) fn pairs_of<'a>(stances: &[&'a Stance]) -> Vec<[&'a Stance; 2]> {
+    stances.windows(2).map(|pair| [pair[0], pair[1]]).collect()
+}
+
 /// The limits of a hopper, with those that a robot states in their place where the hopper states none, and the lesser of both.
 pub(super) fn with_robot(hopper: &Hopper, robot: &Robot) -> Hopper {
     let limits = *hopper.limits();

@@ -18,7 +18,7 @@ use crate::desk::chta;
 
 /// Commands whose answers have every part that an answer may have: found and refused, with proof, with trials, on maps with and without
 /// a projection, with propellant, with commands in steps, with risk.
-const COMMANDS: [&str; 68] = [
+const COMMANDS: [&str; 69] = [
     "plan data/drive/mars_rover.toml --alternatives",
     "plan data/drive/mars_rover.toml --set budget.mission_time_max_s=100",
     "plan data/drive/mars_rover.toml --set drive.travel=drive --set drive.slope_up_max_deg=1",
@@ -33,6 +33,7 @@ const COMMANDS: [&str; 68] = [
     "plan data/mesh_scenarios/three_legs.toml --set search.contacts_max=30 --set search.seed=5 --set robot.cone=kc",
     "simulate data/mesh_scenarios/three_legs.toml --set search.contacts_max=60 --trials 20 --compare --success-min 0.1",
     "plan data/mesh_scenarios/mars_four_legs.toml --set search.contacts_max=20",
+    "plan data/mesh_scenarios/mars_four_legs.toml --set search.contacts_max=12 --set drive.speed_m_s=0.3 --set drive.slope_up_max_deg=12",
     "map data/mesh_scenarios/mars_four_legs.toml --stride 16 --set robot.headings=2 --hops-max 2",
     "trade data/mesh_scenarios/three_legs.toml --set search.contacts_max=20 --vary robot.cone=kc,exact",
     "hop data/scenarios/paper_76m.toml --from 0 --to 20",

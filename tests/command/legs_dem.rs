@@ -335,8 +335,11 @@ fn what_makes_no_stance_is_named() {
         desk.refused(&words, parts);
     };
     refused(
-        &["drive.speed_m_s=0.1", "drive.slope_up_max_deg=20"],
-        &["robot.file names a robot with legs, which hops from stance to stance, beside [drive]", "remove [drive]"],
+        &["drive.speed_m_s=0.1", "drive.slope_up_max_deg=20", "drive.turn_s_per_deg=1"],
+        &[
+            "robot.file names a robot with legs, which goes from stance to stance, beside drive.turn_s_per_deg",
+            "remove drive.turn_s_per_deg",
+        ],
     );
     refused(&["mission.targets_m=[[6, 6], [9, 9]]"], &["beside [mission], the targets of a hopper", "remove [mission]"]);
     desk.write("sun.asc", "ncols 2\nnrows 2\nxllcenter -1\nyllcenter -1\ncellsize 22\n1 1\n1 1\n");
@@ -358,4 +361,70 @@ fn what_makes_no_stance_is_named() {
     );
     let rock = desk.run(&["stance", "rock.obj", "--at=4,4,9", "--height-m=-3", "--scenario", "plan.toml"]);
     assert!(rock.status == 1 && rock.stdout.contains("the root of the robot lies inside a closed body of the mesh"), "{rock:?}");
+}
+
+#[test]
+fn a_robot_that_walks_and_hops_states_both_and_is_checked_again() {
+    let (desk, dem) = desk(true);
+    desk.write("walk.toml", scenario("[drive]\nspeed_m_s = 0.4\nslope_up_max_deg = 25\n"));
+    let document =
+        desk.json(&["plan", "walk.toml", "--set", "search.contacts_max=60", "--plot", "walk.svg", "--geojson", "walk.geojson"]);
+    assert_eq!((&document["verdict"], &document["verified"]), (&"traversable".into(), &true.into()), "{}", document["walk"]);
+    let (walk, stances) = (&document["walk"], document["stances"].as_array().unwrap());
+    let legs = walk["legs"].as_array().unwrap();
+    assert_eq!(legs.len() + 1, stances.len(), "a move from each stance to the next");
+    let walked: Vec<&Value> = legs.iter().filter(|leg| leg["kind"] == "drive").collect();
+    assert!(!walked.is_empty(), "a slow hopper of 200 stances walks somewhere: {walk}");
+    let number = |value: &Value| value.as_f64().unwrap();
+    // Times add up to those of the mission, and to the objective of the search.
+    let sum: f64 = legs.iter().map(|leg| number(&leg["time_s"])).sum();
+    assert!((sum - number(&walk["totals"]["mission_time_s"])).abs() < 1e-9 * sum);
+    assert_eq!(document["objective"][0], "mission-time");
+    let triangles = Triangles::of(&dem);
+    for (number_of, leg) in legs.iter().enumerate().filter(|(_, leg)| leg["kind"] == "drive") {
+        let [from, to] = ["takeoff_m", "landing_m"].map(|key| numbers(&leg[key]));
+        for (end, stance) in [(&from, number_of), (&to, number_of + 1)] {
+            let root_m = numbers(&stances[stance]["pose"]["root_m"]);
+            assert!((root_m[0] - end[0]).abs() + (root_m[1] - end[1]).abs() < 1e-9, "it walks under its roots");
+        }
+        // The same line in small steps: its length, its slopes, and no step over the gap.
+        let at = |step: u32| {
+            let share = f64::from(step) / 4_000.0;
+            let place = [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])];
+            let (z_m, _) = triangles.at(place.into(), triangles.nominal()).expect("known ground");
+            [place[0], place[1], z_m]
+        };
+        let mut length_m = 0.0;
+        for step in 0..4_000 {
+            let (a, b) = (at(step), at(step + 1));
+            let run_m = (b[0] - a[0]).hypot(b[1] - a[1]);
+            length_m += run_m.hypot(b[2] - a[2]);
+            assert!((b[2] - a[2]) / run_m <= 25f64.to_radians().tan() + 1e-6);
+        }
+        assert!((length_m - number(&leg["length_m"])).abs() < 1e-4 * length_m.max(0.1), "{length_m} m, {leg}");
+        assert!((number(&leg["time_s"]) - number(&leg["length_m"]) / 0.4).abs() < 1e-9 * number(&leg["time_s"]).max(1.0));
+    }
+    let geojson: Value = serde_json::from_str(&std::fs::read_to_string(desk.path().join("walk.geojson")).unwrap()).unwrap();
+    let lines = geojson["features"].as_array().unwrap().iter().filter(|feature| feature["properties"]["kind"] == "drive").count();
+    assert_eq!(lines, walked.len());
+    assert!(std::fs::read_to_string(desk.path().join("walk.svg")).unwrap().contains("walked"));
+    // By hops alone it takes longer, or as long, over the same stances.
+    let hops = desk.json(&["plan", "walk.toml", "--set", "search.contacts_max=60", "--set", "drive.travel=hop"]);
+    assert!(hops.get("walk").is_none());
+    let by_walking = desk.run(&["plan", "walk.toml", "--set", "search.contacts_max=40", "--set", "drive.travel=drive"]);
+    assert!(by_walking.stdout.contains("and 0 hops") || by_walking.status == 1, "{by_walking:?}");
+    // What is not answered says so.
+    desk.write("result.json", document.to_string());
+    for (words, what) in [
+        (&["simulate", "walk.toml"][..], "trials"),
+        (&["map", "ground.asc", "--scenario", "walk.toml", "--mobility", "m.tif"], "maps"),
+        (&["trade", "walk.toml", "--vary", "robot.cone=kc,exact"], "trades"),
+        (&["check", "result.json"], "checks of results"),
+        (&["report", "result.json", "-o", "page.html"], "pages"),
+    ] {
+        desk.refused(words, &["the robot walks, by [drive]", &format!("{what} of robots that walk are not made"), "drive.travel"]);
+    }
+    for file in ["m.tif", "page.html"] {
+        assert!(!desk.path().join(file).exists(), "{file}");
+    }
 }

@@ -208,7 +208,7 @@ fn erratum_the_convergence_property_fails_for_a_fixed_number_of_angles() {
         let (solved, _) = with(JoinTest::ExactWindows, seed);
         let path = solved.route.path.unwrap();
         assert!(solved.end == RoadmapEnd::Joined && path.contacts == [0, 1]);
-        let height_m = PROBE_STAND_OFF_M + path.arcs[0].height_at_m(1.0);
+        let height_m = PROBE_STAND_OFF_M + path.arcs()[0].height_at_m(1.0);
         assert!((1.21..=1.48).contains(&height_m), "{height_m} m in the slot");
     }
 }
@@ -226,7 +226,7 @@ fn erratum_with_two_speeds_the_roadmap_is_directed() {
     for test in [JoinTest::SampledAngles, JoinTest::ExactWindows] {
         let run = |ends| grown(&ground, ends, None, (scheme(test, 2), 0));
         let (up, _) = run([low.clone(), high.clone()]);
-        let arc = up.route.path.unwrap().arcs[0];
+        let arc = up.route.path.unwrap().arcs()[0];
         let back = Arc::new(LineOfSight::new(arc.line_of_sight().run_m(), -arc.line_of_sight().rise_m()), arc.loft(), 9.81);
         assert!(back.landing_speed_m_s() > 4.5 && (back.landing_speed_m_s() - arc.takeoff_speed_m_s()).abs() < 1e-9);
         assert_eq!([up.roadmap.windows_between(0, 1).len(), up.roadmap.windows_between(1, 0).len()], [1, 0], "{test:?}");
@@ -281,7 +281,7 @@ fn sampled_hops_are_in_exact_windows_or_graze() {
         }
         if let Some(path) = &found.route.path {
             paths += 1;
-            for (pair, arc) in path.contacts.windows(2).zip(&path.arcs) {
+            for (pair, arc) in path.contacts.windows(2).zip(path.arcs()) {
                 assert!(is_exact(pair[0], pair[1], SlopeInterval { lower: arc.loft(), upper: arc.loft() }));
             }
         }

@@ -123,7 +123,7 @@ fn feet_reach_their_footholds_for_as_long_as_samples_say() {
     let (sight, windows) = ground.windows(&ends[0], &ends[1], &mut buffers).unwrap();
     let loft = windows[0].lower.midpoint(windows[0].upper.min(windows[0].lower + 2.0));
     let arc = chta::ballistics::Arc::new(sight, loft, G);
-    let path = path_over_stances(&ground, &[&ends[0], &ends[1]], &[arc]).unwrap();
+    let path = path_over_stances(&ground, &[[&ends[0], &ends[1]]], &[arc]).unwrap();
     let flight = StanceFlight::new(&ground, [&ends[0], &ends[1]], &path.hops[0]);
     let time_s = path.hops[0].flight_time_s;
     // The ends are the stances, and the velocity between two instants that of the push.

@@ -39,6 +39,7 @@ fn a_path_behind_a_block_is_dashed_and_its_hops_are_listed() {
         start: contacts[0].point_m(),
         goal: contacts[2].point_m(),
         routes: vec![line("")],
+        walks: Vec::new(),
         nearest: None,
     };
     let lines = |svg: &str| svg.matches("<polyline").count();

@@ -113,7 +113,7 @@ pub fn grow_roadmap<G: RoadmapGround>(
     let mut grown = over_roadmap(ground, Roadmap::new(), ends, question, progress)?;
     let numbers = grown.ends;
     let is_there = numbers.0 == numbers.1;
-    let gains = Gains { least: ground.least_amounts(), points };
+    let gains = Gains { least: (ground.walk_neighbours() == 0).then(|| ground.least_amounts()), points };
     let (mut weak_rounds, mut rounds) = (0, 0_u32);
     grown.end = loop {
         if is_there {
@@ -273,17 +273,18 @@ fn mean_length_m(points: &[Point3<f64>]) -> f64 {
 
 /// What a path through a point takes at least.
 struct Gains {
-    least: LeastAmounts,
+    /// `None` where the machine also walks: what hops take at least then bounds no path.
+    least: Option<LeastAmounts>,
     points: [Point3<f64>; 2],
 }
 
 impl Gains {
     /// Whether a path through a point may be better than the best one.
     fn are_possible(&self, point: &Point3<f64>, best: &RoadmapRoute, question: &RoadmapQuestion<'_>) -> bool {
-        let Some(path) = best.path.as_ref().filter(|_| best.within) else { return true };
+        let (Some(path), Some(least)) = (best.path.as_ref().filter(|_| best.within), &self.least) else { return true };
         let over = |from: &Point3<f64>, to: &Point3<f64>| {
             let away = to - from;
-            self.least.over(libm::hypot(away.x, away.y), away.z)
+            least.over(libm::hypot(away.x, away.y), away.z)
         };
         let through = over(&self.points[0], point).then(&over(point, &self.points[1]));
         let amounts = question.objective.amounts().iter();

@@ -7,7 +7,7 @@ use petgraph::{
 };
 use rayon::prelude::*;
 
-use super::RoadmapGround;
+use super::{RoadmapGround, RoadmapWalks};
 use crate::{
     ballistics::LineOfSight,
     ground::MeshContact,
@@ -15,7 +15,8 @@ use crate::{
     quantity::SlopeInterval,
 };
 
-/// Contacts on a mesh, or stances of a robot with legs, and every window of every hop between two of them.
+/// Contacts on a mesh, or stances of a robot with legs, and every window of every hop between two of them; where the robot walks, also the straight
+/// lines between near stances.
 ///
 /// Nodes are contacts or stances. An edge is one window of a hop, as lofts over its line of sight: a hop with several windows has as many parallel
 /// edges, ascending.
@@ -23,6 +24,7 @@ use crate::{
 pub struct Roadmap<N = MeshContact> {
     graph: DiGraph<N, SlopeInterval>,
     pairs_tested: u64,
+    walks: RoadmapWalks,
 }
 
 /// A hop of a roadmap: its landing and its windows.
@@ -36,7 +38,7 @@ pub struct RoadmapHop {
 
 impl<N> Default for Roadmap<N> {
     fn default() -> Self {
-        Self { graph: DiGraph::new(), pairs_tested: 0 }
+        Self { graph: DiGraph::new(), pairs_tested: 0, walks: RoadmapWalks::default() }
     }
 }
 
@@ -56,7 +58,7 @@ impl<N: Clone + Send + Sync> Roadmap<N> {
         for (from, to, lofts) in windows {
             graph.add_edge(NodeIndex::new(*from as usize), NodeIndex::new(*to as usize), *lofts);
         }
-        Self { graph, pairs_tested }
+        Self { graph, pairs_tested, walks: RoadmapWalks::default() }
     }
 
     /// The graph, for the algorithms of petgraph.
@@ -77,6 +79,11 @@ impl<N: Clone + Send + Sync> Roadmap<N> {
     /// Ordered pairs of contacts whose hop was tested.
     pub const fn pairs_tested(&self) -> u64 {
         self.pairs_tested
+    }
+
+    /// The straight lines that the machine walks.
+    pub const fn walks(&self) -> &RoadmapWalks {
+        &self.walks
     }
 
     /// A contact by its number.
@@ -108,8 +115,8 @@ impl<N: Clone + Send + Sync> Roadmap<N> {
         self.hops_from(from).find(|hop| hop.landing == to).map(|hop| self.windows(hop).collect()).unwrap_or_default()
     }
 
-    /// Adds contacts, and tests every hop between two contacts of which at least one is new. The result is the same for any number of
-    /// threads.
+    /// Adds contacts, and tests every hop between two contacts of which at least one is new; where the machine walks, also the straight lines
+    /// between each new contact and those nearest to it. The result is the same for any number of threads.
     ///
     /// # Errors
     /// [`Cancelled`]; the roadmap is then as it was.
@@ -142,8 +149,8 @@ impl<N: Clone + Send + Sync> Roadmap<N> {
         let rows = (0..all).into_par_iter().map_init(G::Buffers::default, row);
         let rows: Vec<Vec<(usize, SlopeInterval)>> = rows.collect::<Result<_, Cancelled>>()?;
         meter.check()?;
-        let (all, old) = (all as u64, known as u64);
-        self.pairs_tested += all * all.saturating_sub(1) - old * old.saturating_sub(1);
+        let pairs = |count: usize| count as u64 * (count as u64).saturating_sub(1);
+        self.pairs_tested += pairs(all) - pairs(known);
         for contact in contacts {
             self.graph.add_node(contact);
         }
@@ -153,6 +160,7 @@ impl<N: Clone + Send + Sync> Roadmap<N> {
                 self.graph.add_edge(NodeIndex::new(from), NodeIndex::new(to), lofts);
             }
         }
+        self.walks.extend(ground, &|node| &self.graph[NodeIndex::new(node)], known..all);
         Ok(())
     }
 
@@ -190,13 +198,24 @@ impl<N: Clone + Send + Sync> Roadmap<N> {
         self.levels(start, Towards::Outgoing)
     }
 
-    /// Breadth-first search, along the edges or against them.
+    /// Breadth-first search, along the edges or against them; walking takes no hop.
     fn levels(&self, first: usize, towards: Towards) -> Vec<Option<u32>> {
         let mut levels = vec![None; self.contact_count()];
         levels[first] = Some(0);
         let mut layer = vec![NodeIndex::new(first)];
+        let walks = self.walks.towards(towards);
         let mut hops = 0;
         while !layer.is_empty() {
+            let mut walked = 0;
+            while let Some(node) = layer.get(walked) {
+                for &neighbour in walks.get(node.index()).into_iter().flatten() {
+                    if levels[neighbour].is_none() {
+                        levels[neighbour] = Some(hops);
+                        layer.push(NodeIndex::new(neighbour));
+                    }
+                }
+                walked += 1;
+            }
             hops += 1;
             let mut next = Vec::new();
             for node in layer {

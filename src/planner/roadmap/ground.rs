@@ -7,8 +7,9 @@ use nalgebra::Point3;
 use super::DrawnContacts;
 use crate::{
     ballistics::{FlightEnvelope, LineOfSight, PathBounds},
+    drive::DriveLimit,
     ground::{MeshBuffers, MeshContact, MeshGround},
-    planner::LeastAmounts,
+    planner::{Amounts, LeastAmounts},
     quantity::SlopeInterval,
     world::Limit,
 };
@@ -49,6 +50,19 @@ pub trait RoadmapGround: Sync {
 
     /// Why no arc is feasible; `None` if one is, or if the hop is vertical.
     fn refused_by(&self, takeoff: &Self::Node, landing: &Self::Node) -> Option<Limit>;
+
+    /// To how many of its nearest nodes the machine may walk from a node; 0: it hops alone.
+    fn walk_neighbours(&self) -> usize {
+        0
+    }
+
+    /// What walking straight from one node to another takes, where the machine walks.
+    ///
+    /// # Errors
+    /// The limit that refuses it.
+    fn walk(&self, _from: &Self::Node, _to: &Self::Node) -> Result<Amounts, DriveLimit> {
+        Err(DriveLimit::Ground)
+    }
 
     /// Lower bounds on what a hop takes.
     fn least_amounts(&self) -> LeastAmounts {

@@ -3,9 +3,12 @@
 use super::{Roadmap, RoadmapGround};
 use crate::{
     ballistics::{Arc, TakeoffChoice},
-    planner::{Amounts, LeastAmounts, LegGraph, LegVisitor, PathStep, SearchedCommands, Successor},
+    planner::{Amount, Amounts, LeastAmounts, LegGraph, LegVisitor, PathStep, SearchedCommands, Successor},
     progress::Cancelled,
 };
+
+/// The command of a straight line that is walked.
+const WALKED: u32 = u32::MAX;
 
 /// The graph of a roadmap from a start to a goal.
 #[derive(Debug)]
@@ -15,7 +18,7 @@ pub struct RoadmapLegs<'a, G: RoadmapGround> {
     ends: (usize, usize),
     commands: Vec<TakeoffChoice>,
     least: LeastAmounts,
-    /// The fewest hops to the goal: no path of the roadmap takes fewer.
+    /// The fewest hops to the goal: no path of the roadmap takes fewer. Walking takes none.
     hops_left: Vec<Option<u32>>,
 }
 
@@ -42,12 +45,24 @@ impl<'a, G: RoadmapGround> RoadmapLegs<'a, G> {
         self.ends
     }
 
+    /// Whether the machine also walks: what a hop takes at least then bounds no path.
+    const fn walks(&self) -> bool {
+        self.roadmap.walks().are_looked_for()
+    }
+
+    /// What a hop along an arc takes. Where hops alone follow each other the machine settles before every hop but the first; where it also walks,
+    /// after every landing but one at the goal.
+    fn amounts(&self, arc: &Arc, [from, to]: [usize; 2]) -> Amounts {
+        let limits = self.ground.envelope().hopper().limits();
+        Amounts::of_arc(arc, limits, if self.walks() { to == self.ends.1 } else { from == self.ends.0 })
+    }
+
     /// The fewest hops from every contact to the goal; `None` from where it is not reached.
     pub fn hops_left(&self) -> &[Option<u32>] {
         &self.hops_left
     }
 
-    /// The arc of a step of a path.
+    /// The arc of a step of a path; `None` where it is walked.
     pub fn arc(&self, step: &PathStep) -> Option<Arc> {
         let sight = self.roadmap.sight(self.ground, step.from, step.to)?;
         let choice = *self.commands.get(step.command as usize)?;
@@ -76,10 +91,15 @@ impl<G: RoadmapGround> LegGraph for RoadmapLegs<'_, G> {
                 let Some((_, loft)) = choice.among(sight, roadmap.windows(hop)) else { continue };
                 if !known[..command].contains(&loft) {
                     let arc = Arc::new(sight, loft, envelope.gravity_m_s2());
-                    let amounts = Amounts::of_arc(&arc, envelope.hopper().limits(), node == self.ends.0);
+                    let amounts = self.amounts(&arc, [node, hop.landing]);
                     visitor.visit(&Successor { node: hop.landing, command: number, amounts });
                 }
                 known[command] = loft;
+            }
+        }
+        for (to, amounts) in roadmap.walks().of(node) {
+            if self.hops_left[*to].is_some() && visitor.wants(*to, amounts) {
+                visitor.visit(&Successor { node: *to, command: WALKED, amounts: *amounts });
             }
         }
         Ok(())
@@ -88,6 +108,9 @@ impl<G: RoadmapGround> LegGraph for RoadmapLegs<'_, G> {
     fn least_to_goal(&self, node: usize) -> Amounts {
         let [here, goal] = [node, self.ends.1].map(|node| self.ground.point_m(self.roadmap.contact(node)));
         let away = goal - here;
+        if self.walks() {
+            return Amounts::NONE.with(Amount::Hops, self.hops_left[node].map_or(0.0, f64::from));
+        }
         self.least.over_in(libm::hypot(away.x, away.y), away.z, self.hops_left[node].map_or(0, u64::from))
     }
 }

@@ -21,6 +21,7 @@ mod legs;
 mod one_by_one;
 mod route;
 mod sample;
+mod walks;
 
 pub use anytime::{GAIN_MIN, GrownRoadmap, RoadmapEnd, RoadmapLimits, RoadmapRound, grow_roadmap, grow_until_joined, over_roadmap};
 pub use file::RoadmapFileError;
@@ -30,8 +31,11 @@ pub use join::{JoinCounts, JoinTest, PROBE_RADIUS_M, PROBE_STAND_OFF_M, PROBE_ST
 pub use kind::RoadmapPlanner;
 pub use legs::RoadmapLegs;
 pub use one_by_one::{OneByOne, grow_one_by_one};
-pub use route::{RoadmapGap, RoadmapPath, RoadmapQuestion, RoadmapRoute};
+pub use route::{RoadmapGap, RoadmapMove, RoadmapPath, RoadmapQuestion, RoadmapRoute};
 pub use sample::{BY_AREA, ContactSampler, DrawnContacts, NothingWithin, SpaceBounds};
+pub use walks::RoadmapWalks;
 
 #[cfg(test)]
 pub(crate) mod tests;
+#[cfg(test)]
+mod walk_tests;

@@ -144,7 +144,7 @@ impl Growth<'_> {
             return false;
         }
         let mut grazes = Vec::new();
-        for (pair, arc) in path.contacts.windows(2).zip(&path.arcs) {
+        for (pair, arc) in path.contacts.windows(2).zip(path.arcs()) {
             let contacts = [pair[0], pair[1]].map(|node| self.roadmap.contact(node));
             if !self.joiner.is_in_a_window(contacts, arc.loft()) {
                 grazes.push([pair[0], pair[1]]);

@@ -28,13 +28,23 @@ pub struct RoadmapQuestion<'a> {
     pub cap: LabelCap,
 }
 
+/// The move from one contact of a path to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a path has few, and nearly all are hops")]
+pub enum RoadmapMove {
+    /// A hop along an arc.
+    Hop(Arc),
+    /// A straight line over the ground, which is walked.
+    Walk,
+}
+
 /// A path of a roadmap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoadmapPath {
     /// The contacts from start to goal, by their numbers.
     pub contacts: Vec<usize>,
-    /// The arc from each contact to the next.
-    pub arcs: Vec<Arc>,
+    /// The move from each contact to the next.
+    pub moves: Vec<RoadmapMove>,
     /// What it takes.
     pub totals: Amounts,
 }
@@ -51,6 +61,18 @@ pub struct RoadmapRoute {
     pub unmet: Vec<UnmetBudget>,
     /// Whether labels were left out: the path may then not be the best, and that none keeps the budgets is not certain.
     pub capped: bool,
+}
+
+impl RoadmapPath {
+    /// The places among its contacts from which its hops take off, in their order; each lands at the next contact.
+    pub fn takeoffs(&self) -> Vec<usize> {
+        self.moves.iter().enumerate().filter(|(_, each)| matches!(each, RoadmapMove::Hop(_))).map(|(number, _)| number).collect()
+    }
+
+    /// The arcs of its hops, in their order.
+    pub fn arcs(&self) -> Vec<Arc> {
+        self.moves.iter().filter_map(|each| if let RoadmapMove::Hop(arc) = each { Some(*arc) } else { None }).collect()
+    }
 }
 
 impl<N: Clone + Send + Sync> Roadmap<N> {
@@ -204,7 +226,7 @@ fn path_of<G: RoadmapGround>(legs: &RoadmapLegs<'_, G>, path: &FoundPath) -> Roa
     let landings = path.steps.iter().map(|step| step.to);
     RoadmapPath {
         contacts: std::iter::once(legs.ends().0).chain(landings).collect(),
-        arcs: path.steps.iter().filter_map(|step| legs.arc(step)).collect(),
+        moves: path.steps.iter().map(|step| legs.arc(step).map_or(RoadmapMove::Walk, RoadmapMove::Hop)).collect(),
         totals: path.totals,
     }
 }

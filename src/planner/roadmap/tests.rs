@@ -122,8 +122,8 @@ fn the_best_path_is_that_of_all_pairs_tested_one_by_one() {
                 found += 1;
                 let total = path.totals.of(amount);
                 assert!((total - expected).abs() <= 1e-9 * expected, "scene {scene}: {amount} {total}, expected {expected}");
-                assert_eq!(path.arcs.len() + 1, path.contacts.len());
-                let sum: f64 = path.arcs.iter().map(|arc| amount.of_arc(arc, ground.envelope().hopper().limits(), false)).sum();
+                assert_eq!(path.moves.len() + 1, path.contacts.len());
+                let sum: f64 = path.arcs().iter().map(|arc| amount.of_arc(arc, ground.envelope().hopper().limits(), false)).sum();
                 assert!((sum - total).abs() <= 1e-9 * total, "the arcs take {sum}, the totals say {total}");
             } else {
                 lost += 1;
@@ -258,7 +258,7 @@ fn a_slot_that_sampled_angles_miss_is_passed() {
     let objective = Objective::of(Amount::Hops);
     let path = roadmap.route(&ground, (0, 1), &question(&objective, &Budgets::NONE)).unwrap().path.unwrap();
     assert_eq!(path.contacts, [0, 1]);
-    let height_m = path.arcs[0].height_at_m(1.0);
+    let height_m = path.arcs()[0].height_at_m(1.0);
     assert!((1.21..=1.48).contains(&height_m), "{height_m} m in the slot");
 }
 

@@ -119,7 +119,7 @@ fn the_hops_are_those_of_the_roadmap_and_of_its_plans() {
             let goal = 1 + draw.below(contacts.len() - 1);
             let path = roadmap.route(&ground, (0, goal), &asked).unwrap().path;
             assert_eq!(
-                path.as_ref().map(|path| path.arcs.len()),
+                path.as_ref().map(|path| path.moves.len()),
                 out.hops[goal].map(|hops| hops as usize),
                 "scene {number}, goal {goal}"
             );

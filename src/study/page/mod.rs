@@ -17,8 +17,8 @@ use self::{
     posts::page_posts,
 };
 use super::{
-    Case, LegsRouteError, MeshRouteError, ReadBackError, SimulateError, dem_ground::dem_ground, legs_ends::legs_ends,
-    mesh_ends::mesh_ends, stance::with_robot,
+    Case, LegsRouteError, LegsRouteQuestion, MeshRouteError, ReadBackError, SimulateError, dem_ground::dem_ground,
+    legs_ends::legs_ends, mesh_ends::mesh_ends, stance::with_robot,
 };
 use crate::{
     report::{InputFile, PageGround, ProfilePiece},
@@ -110,6 +110,7 @@ pub fn page_ground_over_facets(
     let (ground, map) = match &scenario.legs.file {
         None => (mesh_ends(scenario, base, 0.0)?.ground, None),
         Some(file) => {
+            LegsRouteQuestion { scenario, base }.of_hops_alone("pages")?;
             let read = read_robot(&base.join(file)).map_err(LegsRouteError::from)?;
             let with_limits = Scenario { hopper: with_robot(&scenario.hopper, &read.robot), ..scenario.clone() };
             let ends = legs_ends(&with_limits, base, &read.robot)?;

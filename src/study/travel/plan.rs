@@ -7,21 +7,22 @@ use super::super::{
     nodes::{coarse_nodes, level_hop_m, post_spacing_m},
 };
 use super::{
+    records::{drive_leg, hop_leg, point},
     search::TravelSearch,
     walk::{Driven, Stretch, agreed_sums, stretches},
 };
 use crate::{
-    drive::{DriveLeg, Extreme},
+    drive::DriveLeg,
     graph::proof::ProofVerdict,
-    ground::{DemGround, MapPosition, Surface},
-    path::{Hop, HopPath, Totals, heading_deg},
+    ground::{DemGround, Surface},
+    path::{Hop, HopPath, Totals},
     planner::{Amount, Amounts, Mission, Objective, Travel},
     progress::Progress,
     quantity::Angle,
     report::{
-        DeratingRecord, DriveLegRecord, DriveMarginsRecord, DriveRefusalRecord, HopLegRecord, HopRecord, ObjectiveRecord,
-        PropellantShortage, TotalsRecord, TravelAlternativeRecord, TravelAnswer, TravelFrontRecord, TravelLegRecord,
-        TravelSearchRecord, TravelStopRecord, TravelSumsRecord, TravelTotalsRecord, hops_of, mission_geojson,
+        DeratingRecord, DriveRefusalRecord, HopRecord, ObjectiveRecord, PropellantShortage, TotalsRecord, TravelAlternativeRecord,
+        TravelAnswer, TravelFrontRecord, TravelLegRecord, TravelSearchRecord, TravelStopRecord, TravelSumsRecord,
+        TravelTotalsRecord, hops_of, mission_geojson,
     },
     scenario::Scenario,
     terrain::Dem,
@@ -243,10 +244,6 @@ fn hops_in(walked: &[Stretch]) -> Vec<Hop> {
     hops.copied().collect()
 }
 
-fn point(place: &MapPosition) -> [f64; 3] {
-    [place.at.x, place.at.y, place.z_m]
-}
-
 /// The sums over the legs, which are those of the search.
 fn totals(
     search: &TravelSearch,
@@ -293,7 +290,7 @@ fn legs(search: &TravelSearch, walked: &[Stretch], flown: &HopPath) -> Vec<Trave
     for stretch in walked {
         match stretch {
             Stretch::Drive(driven) => {
-                legs.push(TravelLegRecord::Drive(Box::new(drive_leg(search, driven, legs.len() + 1))));
+                legs.push(TravelLegRecord::Drive(Box::new(drive_leg(&search.keys.rover, driven, legs.len() + 1))));
                 travelled_m += driven.legs.iter().map(|leg| leg.run_m).sum::<f64>();
             }
             Stretch::Hops(path) => {
@@ -301,57 +298,12 @@ fn legs(search: &TravelSearch, walked: &[Stretch], flown: &HopPath) -> Vec<Trave
                     row.takeoff_x_m = travelled_m;
                     travelled_m += hop.run_m();
                     row.landing_x_m = travelled_m;
-                    legs.push(TravelLegRecord::Hop(Box::new(hop_leg(search, (row, hop), legs.len() + 1))));
+                    let ends_mission = hop.landing.map() == Some(search.free.goal.goal);
+                    let limits = search.free.ground.hopper().limits();
+                    legs.push(TravelLegRecord::Hop(Box::new(hop_leg((limits, ends_mission), (row, hop), legs.len() + 1))));
                 }
             }
         }
     }
     legs
-}
-
-fn hop_leg(search: &TravelSearch, (row, hop): (HopRecord, &Hop), leg: usize) -> HopLegRecord {
-    let limits = search.free.ground.hopper().limits();
-    let ends_mission = hop.landing.map() == Some(search.free.goal.goal);
-    let settling_s = if ends_mission { 0.0 } else { limits.settling_s().unwrap_or(0.0) };
-    HopLegRecord {
-        leg,
-        takeoff_m: hop.takeoff.point_m.coords.into(),
-        landing_m: hop.landing.point_m.coords.into(),
-        time_s: limits.preparation_time_s.unwrap_or(0.0) + hop.flight_time_s + settling_s,
-        energy_j_kg: limits.store_energy_j_kg(0.5 * hop.takeoff_speed_m_s * hop.takeoff_speed_m_s, 1),
-        hop: row,
-    }
-}
-
-fn drive_leg(search: &TravelSearch, driven: &Driven, leg: usize) -> DriveLegRecord {
-    let Driven { places, legs, turn_time_s } = driven;
-    let rover = &search.keys.rover;
-    let sum = |of: fn(&DriveLeg) -> f64| legs.iter().map(of).sum::<f64>();
-    let (first, last) = (places[0], places[places.len() - 1]);
-    // The steepest of all lines, up or down, with its place.
-    let of_line = |(number, line): (usize, &DriveLeg)| {
-        let (up, down) = (line.steepest_up, line.steepest_down);
-        let (slope, Extreme { at_m, .. }) = if up.value >= down.value { (up.value, up) } else { (-down.value, down) };
-        let along = places[number + 1].at - places[number].at;
-        (slope, places[number].at + along * (at_m / line.run_m.max(f64::MIN_POSITIVE)))
-    };
-    let steepest = legs.iter().enumerate().map(of_line).max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
-    let (slope, at) = steepest.unwrap_or((0.0, first.at));
-    DriveLegRecord {
-        leg,
-        takeoff_m: point(&first),
-        landing_m: point(&last),
-        heading_deg: heading_deg(first.at, last.at),
-        waypoints_m: places.iter().map(point).collect(),
-        length_m: sum(|leg| leg.length_m),
-        distance_m: sum(|leg| leg.run_m),
-        climb_m: sum(|leg| leg.climb_m),
-        descent_m: sum(|leg| leg.descent_m),
-        time_s: sum(|leg| leg.time_s) + turn_time_s,
-        turn_time_s: *turn_time_s,
-        energy_j_kg: sum(|leg| leg.energy_j_kg) + rover.idle_j_kg_s() * turn_time_s,
-        steepest_deg: Angle::from_slope(slope).degrees(),
-        steepest_at_m: at.into(),
-        margins: DriveMarginsRecord::of(legs, rover),
-    }
 }

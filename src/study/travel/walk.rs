@@ -25,10 +25,10 @@ pub(super) enum Stretch {
 
 /// A driven stretch.
 #[derive(Clone, Debug)]
-pub(super) struct Driven {
-    pub(super) places: Vec<MapPosition>,
-    pub(super) legs: Vec<DriveLeg>,
-    pub(super) turn_time_s: f64,
+pub(in crate::study) struct Driven {
+    pub(in crate::study) places: Vec<MapPosition>,
+    pub(in crate::study) legs: Vec<DriveLeg>,
+    pub(in crate::study) turn_time_s: f64,
 }
 
 /// Why a planned drive leg does not hold.
@@ -54,7 +54,7 @@ pub(super) fn stretches(
         let places = &path.places[first..=first + count];
         let moves = &path.moves[first..first + count];
         stretches.push(if kind {
-            Stretch::Drive(driven(search, places)?)
+            Stretch::Drive(driven_again((&search.free.ground, &search.keys.rover), places)?)
         } else {
             Stretch::Hops(flown(search, (places, moves), commands)?)
         });
@@ -84,8 +84,10 @@ fn flown(
 }
 
 /// A driven stretch, by the slices and by the checker.
-fn driven(search: &TravelSearch, places: &[MapPosition]) -> Result<Driven, JourneyError> {
-    let (ground, rover) = (&search.free.ground, &search.keys.rover);
+pub(in crate::study) fn driven_again(
+    (ground, rover): (&DemGround, &Rover),
+    places: &[MapPosition],
+) -> Result<Driven, FreeRouteError> {
     let drive = DriveGround::new(ground, rover);
     let mut legs = Vec::with_capacity(places.len() - 1);
     for pair in places.windows(2) {
@@ -97,7 +99,7 @@ fn driven(search: &TravelSearch, places: &[MapPosition]) -> Result<Driven, Journ
 }
 
 /// Whether two ways to add up the same differ by more than rounding.
-fn differs(a: f64, b: f64) -> bool {
+pub(in crate::study) fn differs(a: f64, b: f64) -> bool {
     /// As a share.
     const ROUNDING: f64 = 1e-6;
     (a - b).abs() > ROUNDING * a.abs().max(b.abs()).max(f64::MIN_POSITIVE)

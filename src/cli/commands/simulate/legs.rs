@@ -27,7 +27,9 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let progress = Progress::new(args.common.quiet);
     let question = LegsRouteQuestion { scenario: &input.scenario, base: &input.base };
-    let routed = legs_route(question, &progress).map_err(|error| Failure::about(&input.mesh, &error))?;
+    let about = |error| Failure::about(&input.mesh, &error);
+    let question = question.of_hops_alone("trials").map_err(about)?;
+    let routed = legs_route(question, &progress).map_err(about)?;
     let simulated =
         simulate_legs(routed, &input.scenario, &args.options(), &progress).map_err(|error| Failure::about(&input.mesh, &error))?;
     output::warn_all(args.common.quiet, &simulated.warnings);

@@ -69,7 +69,8 @@ impl Draft {
             return over_mesh(open, of_result.as_ref(), options, progress);
         }
         refuse(&[(options.tally, "a tally")], "a tally holds the landings of a point, and this robot has legs")?;
-        let routed = legs_route(LegsRouteQuestion { scenario: &open.scenario, base: &open.base }, progress)?;
+        let question = LegsRouteQuestion { scenario: &open.scenario, base: &open.base }.of_hops_alone("trials")?;
+        let routed = legs_route(question, progress)?;
         let flown = simulate_legs(routed, &open.scenario, options, progress)?;
         let (kind, answer) = (DocumentKind::SimulateLegs, &flown.answer);
         let json = open.document_on_map(kind, flown.routed.crs().as_ref(), &flown.warnings, answer)?;
@@ -217,7 +218,7 @@ fn run_of_legs(open: &OpenFacets, progress: &dyn Progress) -> Result<Ran, AskErr
     let routed = legs_route(LegsRouteQuestion { scenario: &open.scenario, base: &open.base }, progress)?;
     let (answer, crs, mut warnings) = (routed.answer.clone(), routed.crs(), routed.warnings.clone());
     let (holds, mut trials) = (answer.plan.is_traversable(), None);
-    if open.scenario.uncertainty.is_some() && routed.path.is_some() {
+    if open.scenario.uncertainty.is_some() && routed.path.is_some() && answer.walk.is_none() {
         let flown = simulate_legs(routed, &open.scenario, &SimulateOptions::default(), progress)?;
         warnings.clone_from(&flown.warnings);
         let kind = DocumentKind::SimulateLegs;
