@@ -66,7 +66,10 @@ pub(super) fn take_width(name: &str, command: &ArgMatches) -> Result<(), Failure
 
 /// A picture in the width of the command line.
 pub(super) fn in_width(picture: Picture) -> Result<Picture, FigureError> {
-    WIDTH_MM.get().map_or(Ok(picture.clone()), |width_mm| picture.with_width_mm(*width_mm))
+    match WIDTH_MM.get() {
+        None => Ok(picture),
+        Some(width_mm) => picture.with_width_mm(*width_mm),
+    }
 }
 
 /// The files of a picture, which the answer names if they are several.
