@@ -90,7 +90,9 @@ pub(crate) fn pages(drawn: Result<Picture, FigureError>, file: &Path) -> Result<
     let format = output::picture_format(file).map_err(about)?;
     let is_special = file.exists() && !file.is_file();
     let pages = if is_special { vec![picture] } else { picture.pages() };
-    let file_of = |(number, page): (usize, &Picture)| Ok((page_file(file, number), page.encoded(format).map_err(about)?));
+    let file_of = |(number, page): (usize, &Picture)| -> Result<(PathBuf, Vec<u8>), Failure> {
+        Ok((page_file(file, number), page.encoded(format).map_err(about)?))
+    };
     (1..).zip(&pages).map(file_of).collect()
 }
 
