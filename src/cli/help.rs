@@ -9,7 +9,7 @@ use chta::{
 };
 use clap::{Command, CommandFactory, FromArgMatches};
 
-use super::{Failure, args::Args, threads};
+use super::{Failure, args::Args, pictures, threads};
 
 /// The name of the command that was called.
 static CALLED: OnceLock<String> = OnceLock::new();
@@ -35,6 +35,7 @@ pub(super) fn parsed() -> Result<Args, Failure> {
         // Parsed once, so it is not set before.
         let _ = CALLED.set(name.to_owned());
         threads::take_default(of_command)?;
+        pictures::take_width(name, of_command)?;
         // clap would miss one that stands before the command.
         if matches.get_flag("verbose") && of_command.try_get_one::<bool>("quiet").is_ok_and(|quiet| quiet == Some(&true)) {
             return Err(Failure::message("found both --verbose and --quiet, expected at most one of them: omit the other"));
@@ -45,7 +46,7 @@ pub(super) fn parsed() -> Result<Args, Failure> {
 
 /// The command line's definition, with these lists in its long help.
 pub(super) fn command() -> Command {
-    let mut command = Args::command();
+    let mut command = pictures::with_width(Args::command());
     let lists = [
         ("run", scenario_keys()),
         ("slice", formats()),

@@ -22,6 +22,7 @@ mod not_for_travel;
 mod not_on_mesh;
 mod output;
 mod page;
+mod pictures;
 mod progress;
 mod run_folder;
 mod sites_input;

@@ -14,7 +14,7 @@ use chta::{
     terrain::MapProjection,
 };
 
-use super::{Answer, Failure, args::Format, claims, inputs, interrupt, verbose, whole_file::WholeFile};
+use super::{Answer, Failure, args::Format, claims, inputs, interrupt, pictures, verbose, whole_file::WholeFile};
 
 /// Writes data to standard output. A closed pipe is not an error.
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
@@ -75,14 +75,18 @@ pub(crate) fn check_picture(option: &str, path: &Path) -> Result<(), Failure> {
     picture_format(path).map(drop).map_err(|error| Failure::message(format!("{option}: {error}")))
 }
 
-fn picture_format(path: &Path) -> Result<PictureFormat, FigureError> {
+/// The format of a picture file.
+pub(super) fn picture_format(path: &Path) -> Result<PictureFormat, FigureError> {
     let special = path.extension().is_none() && path.exists() && !path.is_file() && !path.is_dir();
     if special { Ok(PictureFormat::Svg) } else { PictureFormat::of(path) }
 }
 
-/// A picture as the bytes of its file, in the format of the file's extension.
+/// A picture of one page as the bytes of its file, in the format of the file's extension.
 pub(crate) fn encoded(drawn: Result<Picture, FigureError>, file: &Path) -> Result<Vec<u8>, Failure> {
-    drawn.and_then(|picture| picture.encoded(picture_format(file)?)).map_err(|error| Failure::message(error.to_string()))
+    drawn
+        .and_then(pictures::in_width)
+        .and_then(|picture| picture.encoded(picture_format(file)?))
+        .map_err(|error| Failure::message(error.to_string()))
 }
 
 /// The format of a table, by its file's extension.

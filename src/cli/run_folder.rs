@@ -7,7 +7,7 @@ use std::{
 
 use chta::{
     chain::csv::write_chain_csv,
-    figure::SeenFrom,
+    figure::{FigureError, Picture, SeenFrom},
     path::HopPath,
     report::{CrsRecord, DocumentKind, MapKnowledge, write_path_csv, write_travel_csv},
     study::{
@@ -23,6 +23,7 @@ use super::{
     load::{Loaded, MeshPlanInput},
     output::{self, Pending},
     page::{PageFile, PageInput},
+    pictures,
     trajectory::TrajectoryFile,
 };
 
@@ -47,6 +48,8 @@ const OF_SOME_RUNS: [&str; 7] =
 pub(crate) struct RunFolder<'a> {
     folder: &'a Path,
     files: Vec<(&'static str, Vec<u8>)>,
+    /// Further pages of the pictures.
+    pages: Vec<(PathBuf, Vec<u8>)>,
     /// Files that have places of their own.
     beside: Vec<(Pending<'a>, Vec<u8>)>,
     /// The file of the page, until its content is known.
@@ -73,7 +76,7 @@ impl<'a> RunFolder<'a> {
             made(&args.output)?;
         }
         let page = args.report.as_deref().map(|file| PageFile::begin("--report", file)).transpose()?;
-        Ok(Self { folder: &args.output, files: Vec::new(), beside: Vec::new(), page })
+        Ok(Self { folder: &args.output, files: Vec::new(), pages: Vec::new(), beside: Vec::new(), page })
     }
 
     /// The page of the documents, if there is one.
@@ -102,6 +105,14 @@ impl<'a> RunFolder<'a> {
         Ok(())
     }
 
+    /// Adds a picture, with a file for each page.
+    fn picture(&mut self, name: &'static str, drawn: Result<Picture, FigureError>) -> Result<(), Failure> {
+        let mut pages = pictures::pages(drawn, Path::new(name))?.into_iter();
+        self.files.extend(pages.next().map(|(_, first)| (name, first)));
+        self.pages.extend(pages);
+        Ok(())
+    }
+
     /// Adds the chain, the path, the answer and its picture.
     pub(crate) fn plan(&mut self, planned: &Planned, loaded: &Loaded) -> Result<(), Failure> {
         let mut chain_csv = Vec::new();
@@ -115,7 +126,7 @@ impl<'a> RunFolder<'a> {
         planned.write_csv(&mut path_csv).map_err(|error| Failure::message(format!("path.csv: {error}")))?;
         let result = loaded.document(DocumentKind::Run, &planned.warnings, &planned.answer)?;
         self.files.extend([("chain.csv", chain_csv), ("path.csv", path_csv), (RESULT, result.into_bytes())]);
-        self.files.push((PICTURE, output::encoded(planned.picture(), Path::new(PICTURE))?));
+        self.picture(PICTURE, planned.picture())?;
         if let Some(geojson) = planned.geojson() {
             self.files.push(("path.geojson", geojson.into_bytes()));
             self.files.extend(output::prj(projection).map(|text| ("path.prj", text)));
@@ -129,7 +140,7 @@ impl<'a> RunFolder<'a> {
         self.files.push(("simulation.json", document.into_bytes()));
         for (name, picture) in TRIAL_PICTURES.into_iter().zip([simulated.picture(), simulated.landing_map()]) {
             if let Some(drawn) = picture {
-                self.files.push((name, output::encoded(drawn, Path::new(name))?));
+                self.picture(name, drawn)?;
             }
         }
         Ok(())
@@ -142,7 +153,7 @@ impl<'a> RunFolder<'a> {
             .map_err(|error| Failure::message(format!("path.csv: {error}")))?;
         let result = input.document(DocumentKind::RunMesh, &routed.warnings, &routed.answer)?;
         self.files.extend([("path.csv", path_csv), (RESULT, result.into_bytes())]);
-        self.files.push((PICTURE, output::encoded(routed.picture(&input.scenario, SeenFrom::default()), Path::new(PICTURE))?));
+        self.picture(PICTURE, routed.picture(&input.scenario, SeenFrom::default()))?;
         Ok(())
     }
 
@@ -151,7 +162,7 @@ impl<'a> RunFolder<'a> {
         let document = input.document(DocumentKind::SimulateMesh, &simulated.warnings, &simulated.answer)?;
         self.files.push(("simulation.json", document.into_bytes()));
         if let Some(drawn) = simulated.picture(&input.scenario) {
-            self.files.push((TRIAL_PICTURES[0], output::encoded(drawn, Path::new(TRIAL_PICTURES[0]))?));
+            self.picture(TRIAL_PICTURES[0], drawn)?;
         }
         Ok(())
     }
@@ -163,9 +174,9 @@ impl<'a> RunFolder<'a> {
             .map_err(|error| Failure::message(format!("path.csv: {error}")))?;
         let result = input.document_on_map(DocumentKind::PlanLegs, routed.crs().as_ref(), &routed.warnings, &routed.answer)?;
         self.files.extend([("path.csv", path_csv), (RESULT, result.into_bytes())]);
-        self.files.push((PICTURE, output::encoded(routed.picture(&input.scenario, SeenFrom::default()), Path::new(PICTURE))?));
+        self.picture(PICTURE, routed.picture(&input.scenario, SeenFrom::default()))?;
         if let Some(drawn) = routed.postures_picture(&input.scenario, 1) {
-            self.files.push((POSTURES, output::encoded(drawn, Path::new(POSTURES))?));
+            self.picture(POSTURES, drawn)?;
         }
         if let Some(geojson) = routed.geojson() {
             self.files.push(("path.geojson", geojson.into_bytes()));
@@ -188,7 +199,7 @@ impl<'a> RunFolder<'a> {
         write_travel_csv(&planned.answer.path, &mut path_csv).map_err(|error| Failure::message(format!("path.csv: {error}")))?;
         let result = loaded.document(DocumentKind::PlanTravel, &planned.warnings, &planned.answer)?;
         self.files.extend([("path.csv", path_csv), (RESULT, result.into_bytes())]);
-        self.files.push((PICTURE, output::encoded(planned.picture(), Path::new(PICTURE))?));
+        self.picture(PICTURE, planned.picture())?;
         Ok(())
     }
 
@@ -196,7 +207,7 @@ impl<'a> RunFolder<'a> {
     pub(crate) fn trials_of_travel(&mut self, simulated: &TravelSimulated, loaded: &Loaded) -> Result<(), Failure> {
         let document = loaded.document(DocumentKind::SimulateTravel, &simulated.warnings, &simulated.answer)?;
         self.files.push(("simulation.json", document.into_bytes()));
-        self.files.push((TRIAL_PICTURES[0], output::encoded(simulated.picture(), Path::new(TRIAL_PICTURES[0]))?));
+        self.picture(TRIAL_PICTURES[0], simulated.picture())?;
         Ok(())
     }
 
@@ -206,7 +217,7 @@ impl<'a> RunFolder<'a> {
         planned.write_csv(&mut path_csv).map_err(|error| Failure::message(format!("path.csv: {error}")))?;
         let result = loaded.document(DocumentKind::PlanTargets, &planned.warnings, &planned.answer)?;
         self.files.extend([("path.csv", path_csv), (RESULT, result.into_bytes())]);
-        self.files.push((PICTURE, output::encoded(planned.picture(), Path::new(PICTURE))?));
+        self.picture(PICTURE, planned.picture())?;
         if let Some(geojson) = planned.geojson() {
             self.files.push(("path.geojson", geojson.into_bytes()));
             self.files.extend(output::prj(planned.case.prepared.projection.as_ref()).map(|text| ("path.prj", text)));
@@ -218,7 +229,7 @@ impl<'a> RunFolder<'a> {
     pub(crate) fn trials_of_targets(&mut self, simulated: &TargetsSimulated, loaded: &Loaded) -> Result<(), Failure> {
         let document = loaded.document(DocumentKind::SimulateTargets, &simulated.warnings, &simulated.answer)?;
         self.files.push(("simulation.json", document.into_bytes()));
-        self.files.push((TRIAL_PICTURES[0], output::encoded(simulated.picture(), Path::new(TRIAL_PICTURES[0]))?));
+        self.picture(TRIAL_PICTURES[0], simulated.picture())?;
         Ok(())
     }
 
@@ -226,17 +237,21 @@ impl<'a> RunFolder<'a> {
     /// written, in words.
     pub(crate) fn write(mut self, input: PageInput<'_>) -> Result<String, Failure> {
         self.page(input)?;
-        let Self { folder, files, beside, .. } = self;
+        let Self { folder, files, pages, beside, .. } = self;
         made(folder)?;
         claims::repeats(&folder.join(RESULT));
-        let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();
+        let files: Vec<(PathBuf, Vec<u8>)> = files.into_iter().map(|(name, bytes)| (name.into(), bytes)).chain(pages).collect();
+        let names: Vec<_> = files.iter().map(|(name, _)| name.display().to_string()).collect();
         let pending: Result<Vec<_>, Failure> =
             files.into_iter().map(|(name, bytes)| Ok((Pending::begin(folder.join(name))?, bytes))).collect();
         let mut pending = pending?;
         pending.extend(beside);
         output::finish(pending)?;
-        for stale in OF_SOME_RUNS.into_iter().filter(|name| !names.contains(name)) {
-            let _ = fs::remove_file::<PathBuf>(folder.join(stale));
+        let is_stale = |name: &PathBuf| !names.contains(&name.display().to_string());
+        // Trials have at most three pages.
+        let further = [2, 3].map(|number| pictures::page_file(Path::new(TRIAL_PICTURES[0]), number));
+        for stale in OF_SOME_RUNS.into_iter().map(PathBuf::from).chain(further).filter(is_stale) {
+            let _ = fs::remove_file(folder.join(stale));
         }
         Ok(format!("written to {}: {}", folder.display(), names.join(", ")))
     }

@@ -15,6 +15,7 @@ use super::{
     Failure,
     args::Format,
     output::{self, Pending, TableFormat},
+    pictures,
     trajectory::TrajectoryFile,
 };
 
@@ -43,7 +44,7 @@ impl Views<'_> {
     pub(crate) fn show(&self, format: Format, table_to_stdout: bool) -> Result<(), Failure> {
         let answer = match format {
             _ if table_to_stdout => self.table(TableFormat::Csv)?,
-            Format::Text => (self.text)().into_bytes(),
+            Format::Text => ((self.text)() + &pictures::pages_text()).into_bytes(),
             Format::Json => (self.json)()?.into_bytes(),
         };
         output::to_stdout(&answer)
@@ -57,7 +58,7 @@ pub(crate) fn show(
     json: impl FnOnce() -> Result<String, Failure>,
 ) -> Result<(), Failure> {
     let answer = match format {
-        Format::Text => text(),
+        Format::Text => text() + &pictures::pages_text(),
         Format::Json => json()?,
     };
     output::to_stdout(answer.as_bytes())
@@ -107,7 +108,7 @@ impl<'a> GeoJsonFile<'a> {
 pub(crate) struct Files<'a>(Vec<(Pending<'a>, Vec<u8>)>);
 
 impl<'a> Files<'a> {
-    /// Adds a picture, in the format of the file's extension; without a picture the file is not written.
+    /// Adds a picture, in the format of the file's extension, with a file for each page; without a picture the file is not written.
     pub(crate) fn picture(
         &mut self,
         file: Option<Pending<'a>>,
@@ -116,8 +117,11 @@ impl<'a> Files<'a> {
         if let Some(file) = file
             && let Some(drawn) = draw()
         {
-            let encoded = output::encoded(drawn, file.path())?;
-            self.0.push((file, encoded));
+            let mut pages = pictures::encoded(drawn, file.path())?.into_iter();
+            self.0.extend(pages.next().map(|(_, first)| (file, first)));
+            for (path, page) in pages {
+                self.0.push((Pending::begin(path)?, page));
+            }
         }
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use super::{
     FigureError, FigureInput,
+    limits::words,
     spans::{GroundSpan, spans},
 };
 use crate::{
@@ -44,6 +45,8 @@ pub struct FigureData {
     pub subject: Subject,
     /// Whether the hopper prepares its hops, so that times of missions have preparations in them.
     pub prepares: bool,
+    /// Where the line turns within the range shown; empty for a route that turns at every landing.
+    pub bends: Vec<ChainPoint>,
     /// What x is measured along.
     pub along: &'static str,
 }
@@ -207,6 +210,7 @@ impl FigureData {
             start: input.start.point,
             goal: input.goal.point,
             subject,
+            bends: bends(input, view_x_m),
             prepares: input.test.hopper().limits().preparation_time_s.is_some(),
             along: match (&input.plan_view, input.path) {
                 (None, _) => "chain",
@@ -220,6 +224,16 @@ impl FigureData {
     pub fn is_cut(&self) -> bool {
         self.view_x_m != self.chain_x_m
     }
+}
+
+/// The bends of a chain within a range of x.
+fn bends(input: &FigureInput<'_>, (from_x_m, to_x_m): (f64, f64)) -> Vec<ChainPoint> {
+    if input.plan_view.is_some() {
+        return Vec::new();
+    }
+    let geometry = input.test.chain().geometry();
+    let at = |vertex: &VertexId| geometry.vertices().get(vertex.index()).copied();
+    geometry.bends().iter().filter_map(at).filter(|point| (from_x_m..=to_x_m).contains(&point.x_m)).collect()
 }
 
 /// The hops of a path.
@@ -257,18 +271,18 @@ fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
 /// The windows of a hop, with all of them where the machine cannot be commanded every take-off speed.
 fn windows(test: &HopTest, hop: &Hop, stations: Option<(Station, Station)>) -> HopWindows {
     let lower = |limit: Limit, vertex: Option<VertexId>| match vertex {
-        Some(vertex) => format!("{limit} v{}", vertex.index() + 1),
-        None => limit.to_string(),
+        Some(vertex) => format!("{} v{}", words(limit), vertex.index() + 1),
+        None => words(limit),
     };
     let flown = HopWindows {
         angles: vec![hop.takeoff_angles],
-        ends: [lower(hop.lower_limit, hop.lower_vertex), hop.upper_limit.to_string()],
+        ends: [lower(hop.lower_limit, hop.lower_vertex), words(hop.upper_limit)],
         between: None,
     };
     let Some(between) = test.takeoff_speeds().limit() else { return flown };
     let Some(set) = stations.and_then(|(takeoff, landing)| test.takeoff_set(&takeoff, &landing)) else { return flown };
     let (Some(first), Some(last)) = (set.windows().first(), set.windows().last()) else { return flown };
-    let ends = [lower(first.binding.lower.limit, first.binding.lower.vertex), last.binding.upper.limit.to_string()];
+    let ends = [lower(first.binding.lower.limit, first.binding.lower.vertex), words(last.binding.upper.limit)];
     let angles: Vec<_> = set.windows().iter().filter_map(|window| set.angles_of(window.lofts)).collect();
     HopWindows { between: (angles.len() > 1).then_some(between), angles, ends }
 }

@@ -2,7 +2,8 @@
 
 use super::{
     FigureInput, angle_panel,
-    data::{FigureData, HopFigure, Subject, Thinned},
+    data::{FigureData, HopFigure, StoppedFigure, Subject, Thinned},
+    limits::{obstacle, remedy},
     palette::{TEXT_MM, TITLE_MM},
     picture::paragraph,
     sheet::Sheet,
@@ -12,7 +13,7 @@ use super::{
 use crate::{
     graph::{Answer, EndpointRefusal},
     path::Totals,
-    world::{ClearanceRule, Contact, Hopper},
+    world::{ClearanceRule, Contact, Hopper, Limit},
 };
 
 /// Title, question, limits and verdict; returns where they end.
@@ -119,7 +120,7 @@ fn verdict(answer: &Answer, data: &FigureData) -> String {
             many => format!("{many} hops, traversable"),
         },
         Subject::Stopped(_) => {
-            format!("no path over {} nodes, at most {} inside a segment", answer.nodes, answer.points_per_segment)
+            format!("no path found over {} nodes, at most {} inside a segment", answer.nodes, answer.points_per_segment)
         }
         Subject::NoCommands(hops, _) => {
             let plural = if *hops == 1 { "" } else { "s" };
@@ -153,11 +154,16 @@ fn remarks(data: &FigureData) -> Vec<String> {
             all
         }
         Subject::Stopped(stop) => {
+            let (gap_m, said) = gap_words(data, stop);
+            let mut lines = vec![said];
+            lines.extend(stops_words(stop, gap_m > 0.0));
             let miss = stop
                 .nearest_miss
                 .as_ref()
                 .map(|(from, to, why)| format!("Nearest miss, from x = {} m to x = {} m: {why}.", place(from.x_m), place(to.x_m)));
-            miss.into_iter().chain(std::iter::once("Denser nodes may still hold a path.".to_owned())).collect()
+            lines.extend(miss);
+            lines.push("Denser nodes may still hold a path.".to_owned());
+            lines
         }
         Subject::NoCommands(_, refusal) => {
             let refusal = refusal.as_ref().map(|refusal| format!("Refused: {refusal}."));
@@ -168,6 +174,42 @@ fn remarks(data: &FigureData) -> Vec<String> {
         }
         Subject::EndpointsRefuse(refusals) => refusals.iter().map(endpoint).collect(),
     }
+}
+
+/// The gap that stops a journey: its length along the journey, m, and in a sentence.
+fn gap_words(data: &FigureData, stop: &StoppedFigure) -> (f64, String) {
+    let (reached, leads) = stop.gap;
+    let gap_m = (leads.x_m - reached.x_m) * (data.goal.x_m - data.start.x_m).signum();
+    let ends = format!(
+        "The hopper gets from the start to x = {} m, and from x = {} m on to the goal",
+        place(reached.x_m),
+        place(leads.x_m)
+    );
+    let said = if gap_m > 0.0 {
+        format!("{ends}: it does not cross the gap of {} m between them.", short(gap_m))
+    } else {
+        format!("{ends}, but no hop leads from the one to the other ground.")
+    };
+    (gap_m, said)
+}
+
+/// What stops the hopper there, and what would do, from the limits that refuse most.
+fn stops_words(stop: &StoppedFigure, is_gap: bool) -> Vec<String> {
+    /// The limits that are named; the panel has all of them.
+    const MOST_NAMED: usize = 3;
+    let all: u64 = stop.refusals.iter().map(|(_, count)| count).sum();
+    let named = &stop.refusals[..stop.refusals.len().min(MOST_NAMED)];
+    let Some((first, _)) = named.first() else { return Vec::new() };
+    let of = |(at, (limit, count)): (usize, &(Limit, u64))| {
+        let count = if at == 0 { format!("{count} of the {all} hops tried") } else { count.to_string() };
+        format!("{} ({count})", obstacle(*limit))
+    };
+    let obstacles: Vec<_> = named.iter().enumerate().map(of).collect();
+    let place = if is_gap { "What stops it at the gap" } else { "What stops it" };
+    vec![
+        format!("{place}: {}.", obstacles.join("; ")),
+        format!("What would do, judged by the limit that refuses most: {}.", remedy(*first)),
+    ]
 }
 
 /// Where hops fly beside the line of the picture: how they are drawn.

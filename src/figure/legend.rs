@@ -6,7 +6,9 @@ use super::{
     palette::{LEFT_MM, RIGHT_MM, SMALL_MM},
     sheet::{Label, Place, Sheet, text_width_mm},
     spans::{Closure, GroundUse},
-    symbols, touchdown,
+    symbols,
+    terrain_panel::DrawnMarks,
+    touchdown,
 };
 use crate::world::{Contact, Direction};
 
@@ -32,8 +34,8 @@ pub(super) enum Key {
     Usable,
 }
 
-/// The entries that a picture needs.
-pub(super) fn entries(data: &FigureData) -> Vec<(Key, String)> {
+/// The entries that a picture needs, for the marks that its panel has.
+pub(super) fn entries(data: &FigureData, drawn: DrawnMarks) -> Vec<(Key, String)> {
     let mut found: Vec<(Key, String)> = Vec::new();
     match &data.subject {
         Subject::Path { hops, .. } => {
@@ -44,14 +46,17 @@ pub(super) fn entries(data: &FigureData) -> Vec<(Key, String)> {
             }
             if !hops.shown.is_empty() {
                 found.push((Key::Contact(Contact::Takeoff), "take-off".to_owned()));
-                found.push((Key::Contact(Contact::Landing), "landing".to_owned()));
+                if drawn.landings {
+                    found.push((Key::Contact(Contact::Landing), "landing".to_owned()));
+                }
                 // Of hops beside the line, neither cones nor clearance are drawn: they belong to other ground.
                 let on_line = hops.shown.iter().any(|hop| !hop.hop.is_beside_line());
-                if on_line {
+                let has_cone = |end: usize| drawn.cones && hops.shown.iter().any(|hop| hop.cones[end].is_some());
+                if has_cone(0) {
                     found.push((Key::Cone(Contact::Takeoff), "take-off cone".to_owned()));
                 }
                 match hops.shown.iter().find_map(|hop| hop.touchdown_m_s) {
-                    None if on_line => found.push((Key::Cone(Contact::Landing), "landing cone".to_owned())),
+                    None if has_cone(1) => found.push((Key::Cone(Contact::Landing), "landing cone".to_owned())),
                     None => {}
                     Some(speed_m_s) => found.push((Key::Touchdown, touchdown::words(speed_m_s))),
                 }
@@ -61,8 +66,12 @@ pub(super) fn entries(data: &FigureData) -> Vec<(Key, String)> {
             }
         }
         Subject::Stopped(stop) => {
-            found.push((Key::Reached, "reached from the start".to_owned()));
-            found.push((Key::LeadsToGoal, "leads to the goal".to_owned()));
+            if !stop.reached_x_m.is_empty() {
+                found.push((Key::Reached, "reached from the start".to_owned()));
+            }
+            if !stop.leads_to_goal_x_m.is_empty() {
+                found.push((Key::LeadsToGoal, "leads to the goal".to_owned()));
+            }
             if stop.nearest_miss.is_some() {
                 found.push((Key::NearestMiss, "nearest miss".to_owned()));
             }

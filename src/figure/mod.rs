@@ -32,6 +32,7 @@ mod data;
 mod heading;
 mod keys;
 mod legend;
+mod limits;
 mod map;
 mod mesh_hop;
 mod mesh_oblique;
@@ -78,7 +79,7 @@ pub use map::{
 pub use mesh_hop::{MeshHopFigure, draw_mesh_hop};
 pub use mesh_reach::{MeshReachFigure, ReachedContact, draw_mesh_reach};
 pub use mesh_route::{MeshRouteFigure, MeshRouteLine, SeenFrom, draw_mesh_route};
-pub use picture::{Caption, Picture, PictureFormat};
+pub use picture::{Caption, Picture, PictureFormat, WIDTH_MAX_MM, WIDTH_MIN_MM};
 pub use postures::{POSTURE_ROWS_MAX, PostureMark, PostureRow, PosturesFigure, draw_postures};
 pub use robot_view::{LimbMark, RobotMark};
 pub use rose::draw_rose;
@@ -169,6 +170,14 @@ pub enum FigureError {
         /// The file's name.
         file: String,
     },
+    /// The width of a picture is out of range.
+    #[error(
+        "found a picture {width_mm} mm wide, expected {WIDTH_MIN_MM} to {WIDTH_MAX_MM} mm, such as 84 for a column of a journal"
+    )]
+    Width {
+        /// The width asked for, mm.
+        width_mm: f64,
+    },
     /// plotters failed.
     #[error("the figure could not be drawn: {0}")]
     Drawing(String),
@@ -209,8 +218,9 @@ pub fn draw(input: &FigureInput<'_>) -> Result<Picture, FigureError> {
 fn laid_out(input: &FigureInput<'_>, data: &FigureData) -> (Sheet, f64) {
     let mut sheet = Sheet::default();
     let top = heading::above(&mut sheet, input, data);
-    let end = terrain_panel::TerrainPanel::new(data, input.test.chain(), top).draw(&mut sheet);
-    let end = legend::draw(&mut sheet, &legend::entries(data), end + 0.5) + 2.5;
+    let panel = terrain_panel::TerrainPanel::new(data, input.test.chain(), top);
+    let end = panel.draw(&mut sheet);
+    let end = legend::draw(&mut sheet, &legend::entries(data, panel.marks()), end + 0.5) + 2.5;
     let end = input.plan_view.as_ref().map_or(end, |view| map::draw_plan_view(&mut sheet, view, end) + 2.5);
     let end = match &data.subject {
         Subject::Path { hops, .. } if !hops.shown.is_empty() => angle_panel::draw(&mut sheet, hops, end),

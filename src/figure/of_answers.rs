@@ -66,7 +66,7 @@ impl TradeFigure {
     /// The cells of a trade, with a title and a line below it: the first key along the horizontal axis, the second along the
     /// vertical.
     pub fn of(answer: &TradeAnswer, title: impl Into<String>, line: impl Into<String>) -> Self {
-        let axis = |v: &SweptKeyRecord| TradeAxis { name: with_unit(&v.key), values: v.values.clone() };
+        let axis = |v: &SweptKeyRecord| TradeAxis { name: axis_words(&v.key), values: v.values.clone() };
         let mut vary = answer.vary.iter().map(axis);
         Self {
             caption: Caption::new(title, format!("{}; {}", line.into(), answer.summary())),
@@ -77,11 +77,56 @@ impl TradeFigure {
     }
 }
 
+/// A key of a scenario as the name of an axis: `hopper.takeoff_speed_max_m_s` is "greatest take-off speed (m/s)".
+fn axis_words(key: &str) -> String {
+    let labelled = with_unit(key);
+    let unit = labelled.strip_prefix(key).unwrap_or_default();
+    let name = key.rsplit('.').next().unwrap_or(key);
+    let ending = ["_m_s2", "_m_s", "_j_kg", "_deg", "_kg", "_m", "_s", "_j"].into_iter().find(|ending| name.ends_with(ending));
+    let mut parts: Vec<&str> = ending.and_then(|ending| name.strip_suffix(ending)).unwrap_or(name).split('_').collect();
+    let (mut before, mut after) = ("", "");
+    let mut taken = |part: &str| {
+        let at = parts.iter().position(|one| *one == part);
+        at.map(|at| parts.remove(at)).is_some()
+    };
+    if taken("max") {
+        before = "greatest ";
+    } else if taken("min") {
+        before = "least ";
+    }
+    if taken("sigma") {
+        after = if taken("fraction") { ", standard deviation as a share of it" } else { ", standard deviation" };
+    }
+    let words: Vec<&str> = parts.into_iter().map(|part| if part == "takeoff" { "take-off" } else { part }).collect();
+    format!("{before}{}{after}{unit}", words.join(" "))
+}
+
 fn cell(row: &TradeRow) -> TradeCell {
     match row.hops {
         Some(hops) => TradeCell::Hops(hops),
         None if row.error.is_some() => TradeCell::Failed,
         None if row.is_closed() => TradeCell::Untraversable,
         None => TradeCell::Open,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::axis_words;
+
+    #[test]
+    fn axes_are_named_in_words_with_their_unit() {
+        for (key, words) in [
+            ("hopper.takeoff_speed_max_m_s", "greatest take-off speed (m/s)"),
+            ("hopper.takeoff_angle_min_deg", "least take-off angle (deg)"),
+            ("surface.friction_coefficient", "friction coefficient"),
+            ("body.gravity_m_s2", "gravity (m/s²)"),
+            ("hopper.clearance_m", "clearance (m)"),
+            ("uncertainty.takeoff_speed_sigma_fraction", "take-off speed, standard deviation as a share of it"),
+            ("uncertainty.heading_sigma_deg", "heading, standard deviation (deg)"),
+            ("search.points_per_segment", "points per segment"),
+        ] {
+            assert_eq!(axis_words(key), words);
+        }
     }
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::{
     Picture,
+    picture::PAGE_HEIGHT_MM,
     sheet::{Label, Mark},
 };
 use crate::terrain::{Dem, read_dem};
@@ -49,7 +50,15 @@ pub(super) fn check_picture(name: &str, draw: impl Fn() -> Picture) -> Picture {
     let again = draw();
     assert_eq!(picture, again, "{name} is not reproducible");
     assert_eq!(svg, again.to_svg().unwrap());
-    assert!(picture.height_mm.is_finite() && picture.height_mm < 400.0, "{name}: {} mm", picture.height_mm);
+    let pages = picture.pages();
+    let high_mm = if pages.len() > 1 { PAGE_HEIGHT_MM } else { 400.0 };
+    for page in &pages {
+        assert!(page.height_mm.is_finite() && page.height_mm <= high_mm, "{name}: {} mm", page.height_mm);
+        for label in labels(page) {
+            let (_, top, _, bottom) = label.bounds_mm();
+            assert!(top >= 0.3 && bottom <= page.height_mm, "{name}: {:?} leaves its page: {top} to {bottom}", label.text);
+        }
+    }
     if let Some(folder) = std::env::var_os("CHTA_FIGURES_TO").map(PathBuf::from) {
         std::fs::write(folder.join(name).with_extension("svg"), &svg).unwrap();
         std::fs::write(folder.join(name).with_extension("png"), picture.to_png().unwrap()).unwrap();

@@ -3,10 +3,8 @@
 use super::sheet::Place;
 use crate::quantity::ChainPoint;
 
-/// If the drawn height is below this, heights are exaggerated, mm.
-const FLAT_MM: f64 = 14.0;
-/// The greatest drawn height, mm.
-const TALL_MM: f64 = 76.0;
+/// A drawn height below the first of these is exaggerated; none is above the second, mm.
+pub(super) const DRAWN_MM: (f64, f64) = (14.0, 76.0);
 /// The smallest fraction of the panel's width that the ground may take if its height sets the scale.
 const NARROW: f64 = 0.3;
 /// The available exaggerations.
@@ -30,7 +28,7 @@ impl Scale {
     /// property. For heights far larger than the length the drawing gets narrower, and below a third of the width heights are
     /// reduced.
     pub fn new(length_m: f64, rise_m: f64, width_mm: f64) -> Self {
-        Self::within(length_m, rise_m, width_mm, (FLAT_MM, TALL_MM))
+        Self::within(length_m, rise_m, width_mm, DRAWN_MM)
     }
 
     /// The same with other bounds of the drawn height: the least and the greatest, mm.

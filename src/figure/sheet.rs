@@ -161,6 +161,30 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
+    /// The same sheet moved down and then enlarged, with its lines and letters.
+    pub(super) fn moved(mut self, down_mm: f64, by: f64) -> Self {
+        let place = |(x, y): Place| (by * x, by * (y + down_mm));
+        for image in &mut self.images {
+            (image.left_mm, image.top_mm) = place((image.left_mm, image.top_mm));
+            (image.width_mm, image.height_mm) = (by * image.width_mm, by * image.height_mm);
+        }
+        for mark in &mut self.marks {
+            match mark {
+                Mark::Line { points, pen } => {
+                    pen.width_mm *= by;
+                    points.iter_mut().for_each(|point| *point = place(*point));
+                }
+                Mark::Area { points, .. } => points.iter_mut().for_each(|point| *point = place(*point)),
+                Mark::Dot { centre, radius_mm, pen, .. } => {
+                    (*centre, *radius_mm) = (place(*centre), by * *radius_mm);
+                    pen.width_mm *= by;
+                }
+                Mark::Label(label) => (label.at, label.size_mm) = (place(label.at), by * label.size_mm),
+            }
+        }
+        self
+    }
+
     /// Adds a line.
     pub(super) fn line(&mut self, points: Vec<Place>, pen: Pen) {
         self.marks.push(Mark::Line { points, pen });

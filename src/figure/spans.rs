@@ -43,14 +43,14 @@ impl Closure {
     /// The legend text.
     pub const fn text(self) -> &'static str {
         match self {
-            Self::KeepOut => "no contact: keep-out",
-            Self::Layer => "no contact: layer",
-            Self::RestSlope => "no contact: rest-slope",
-            Self::FootprintSlope => "no contact: footprint-slope",
-            Self::Roughness => "no contact: roughness",
-            Self::Cones => "no contact: cones (cross-slope or direction)",
+            Self::KeepOut => "no contact: keep-out zone",
+            Self::Layer => "no contact: a layer does not hold",
+            Self::RestSlope => "no contact: too steep to rest on",
+            Self::FootprintSlope => "no contact: too steep under the footprint",
+            Self::Roughness => "no contact: too rough",
+            Self::Cones => "no contact: no grip in the plane of travel",
             Self::SpeedZero => "no contact: speed limit 0",
-            Self::NoLimits => "no contact: no limits stated (direction)",
+            Self::NoLimits => "no contact: none stated",
         }
     }
 

@@ -3,6 +3,7 @@
 use super::{
     axes::{BELOW_MM, Panel},
     data::StoppedFigure,
+    limits::words,
     palette::{LEFT_MM, RIGHT_MM, SMALL_MM, VERMILION},
     sheet::{Anchor, Hang, Label, Pen, Sheet, text_width_mm},
     ticks::Ticks,
@@ -16,12 +17,13 @@ const BAR_MM: f64 = 2.8;
 /// Draws the panel below a height; returns where it ends.
 pub(super) fn draw(sheet: &mut Sheet, stop: &StoppedFigure, top_mm: f64) -> f64 {
     if stop.refusals.is_empty() {
-        let text = "No hop out of the reached stretch was within reach of any other node.";
+        let text = "No other node was within reach of the reached ground.";
         sheet.label(Label::new(text, (LEFT_MM, top_mm + 3.0), SMALL_MM));
         return top_mm + 6.0;
     }
-    let refusals: Vec<_> = stop.refusals.iter().map(|(limit, count)| (limit.name(), *count)).collect();
-    bars(sheet, &refusals, "refused hops out of the reached stretch, by the first limit that left nothing", top_mm)
+    let names: Vec<_> = stop.refusals.iter().map(|(limit, _)| words(*limit)).collect();
+    let refusals: Vec<_> = names.iter().zip(&stop.refusals).map(|(name, (_, count))| (name.as_str(), *count)).collect();
+    bars(sheet, &refusals, "hops tried from the reached ground onwards, by the limit that refuses them", top_mm)
 }
 
 /// A bar and its number for each name; returns where the panel ends.

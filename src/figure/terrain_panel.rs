@@ -4,8 +4,8 @@ use super::{
     axes::{BELOW_MM, Panel, left_room_mm},
     clearance,
     data::{FigureData, HopFigure, StoppedFigure, Subject},
-    palette::{AXIS, BLACK, GROUND, LEFT_MM, RIGHT_MM, SMALL_MM},
-    scale::{Frame, Scale},
+    palette::{AXIS, BLACK, GROUND, LEFT_MM, PURPLE, RIGHT_MM, SMALL_MM, VERMILION},
+    scale::{DRAWN_MM, Frame, Scale},
     sheet::{Anchor, Hang, Label, Pen, Place, Sheet, text_width_mm},
     spans::{GroundUse, stretch},
     symbols,
@@ -24,6 +24,12 @@ pub(super) const BESIDE_MM: f64 = 3.0;
 const TICK_MM: f64 = 6.5;
 /// Width of the columns in which only the lowest and the highest ground are drawn.
 const COLUMN_MM: f64 = 0.08;
+/// The least length of a stretch of ground on the sheet.
+const LEAST_MM: f64 = 1.0;
+/// Bends of the line.
+const BEND_PEN: Pen = Pen { colour: PURPLE, width_mm: 0.25 };
+/// Hops of a smaller median width have neither cones nor rings at their landings.
+const NARROW_MM: f64 = 2.6;
 /// Greatest deviation of a drawn flight from the parabola.
 const FLATNESS_MM: f64 = 0.008;
 
@@ -33,6 +39,15 @@ pub(super) struct TerrainPanel<'a> {
     chain: &'a ConstrainedChain,
     panel: Panel,
     frame: Frame,
+}
+
+/// The marks of hops that a panel has; those of very narrow hops would cover each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct DrawnMarks {
+    /// Cones at take-offs and landings.
+    pub(super) cones: bool,
+    /// Rings at landings.
+    pub(super) landings: bool,
 }
 
 impl<'a> TerrainPanel<'a> {
@@ -62,6 +77,7 @@ impl<'a> TerrainPanel<'a> {
                 }
             }
         }
+        self.bends(sheet);
         self.end(sheet, self.data.start, "start");
         self.end(sheet, self.data.goal, "goal");
         self.panel.outline(sheet);
@@ -86,7 +102,14 @@ impl<'a> TerrainPanel<'a> {
         }
         sheet.line(surface, symbols::SURFACE_PEN);
         for span in self.data.spans.iter().filter(|span| span.allows != GroundUse::Both) {
-            symbols::ground(sheet, &self.surface(span.from_x_m, span.to_x_m), span.allows);
+            // A stretch too short to be seen is drawn longer than it is: the legend has only what is drawn.
+            let spare_m = (0.5 * (LEAST_MM / self.frame.scale.mm_per_m - (span.to_x_m - span.from_x_m))).max(0.0);
+            let (from, to) = self.data.view_x_m;
+            symbols::ground(
+                sheet,
+                &self.surface((span.from_x_m - spare_m).max(from), (span.to_x_m + spare_m).min(to)),
+                span.allows,
+            );
         }
         for &node in &self.data.nodes.shown {
             symbols::node(sheet, self.frame.place(node));
@@ -100,16 +123,14 @@ impl<'a> TerrainPanel<'a> {
 
     /// Cones, flights, contacts and numbers, in this order from back to front.
     fn hops(&self, sheet: &mut Sheet, hops: &[HopFigure]) {
-        let frame = &self.frame;
-        let mut lengths: Vec<f64> = hops.iter().map(|h| h.arc.line_of_sight().run_m() * frame.scale.mm_per_m).collect();
-        lengths.sort_by(f64::total_cmp);
-        let length_mm = (0.3 * lengths.get(lengths.len() / 2).copied().unwrap_or(0.0)).clamp(1.6, 7.5);
+        let (frame, median_mm, marks) = (&self.frame, self.median_mm(hops), self.marks());
+        let length_mm = (0.3 * median_mm.unwrap_or(0.0)).clamp(1.6, 7.5);
         if self.data.clearance.has_kinks() {
             for hop in hops.iter().filter(|hop| !hop.hop.is_beside_line()) {
                 self.clearance(sheet, hop);
             }
         }
-        for cone in hops.iter().flat_map(|hop| hop.cones.iter().flatten()) {
+        for cone in hops.iter().filter(|_| marks.cones).flat_map(|hop| hop.cones.iter().flatten()) {
             symbols::cone(sheet, frame, cone, length_mm);
         }
         for hop in hops {
@@ -117,13 +138,15 @@ impl<'a> TerrainPanel<'a> {
         }
         for hop in hops {
             symbols::takeoff(sheet, frame.place(hop.hop.takeoff.in_profile()));
-            symbols::landing(sheet, frame.place(hop.hop.landing.in_profile()));
+            if marks.landings {
+                symbols::landing(sheet, frame.place(hop.hop.landing.in_profile()));
+            }
             if hop.touchdown_m_s.is_some() {
                 touchdown::arrow(sheet, frame.place(hop.hop.landing.in_profile()));
             }
         }
         let widest = hops.last().map_or(0.0, |hop| text_width_mm(&hop.number.to_string(), SMALL_MM));
-        let every = one_in((widest + 1.2) / lengths.get(lengths.len() / 2).copied().unwrap_or(1.0));
+        let every = one_in((widest + 1.2) / median_mm.unwrap_or(1.0));
         for hop in hops.iter().step_by(every) {
             self.number(sheet, hop);
         }
@@ -131,6 +154,20 @@ impl<'a> TerrainPanel<'a> {
         if let Some((speed_m_s, hop)) = hops.first().and_then(|hop| hop.touchdown_m_s.zip(Some(hop))) {
             touchdown::speed(sheet, frame.place(hop.hop.landing.in_profile()), speed_m_s);
         }
+    }
+
+    /// The median width of hops on the sheet; `None` without hops.
+    fn median_mm(&self, hops: &[HopFigure]) -> Option<f64> {
+        let mut lengths: Vec<f64> = hops.iter().map(|hop| hop.arc.line_of_sight().run_m() * self.frame.scale.mm_per_m).collect();
+        lengths.sort_by(f64::total_cmp);
+        lengths.get(lengths.len() / 2).copied()
+    }
+
+    /// The marks of hops for which there is room.
+    pub(super) fn marks(&self) -> DrawnMarks {
+        let Subject::Path { hops, .. } = &self.data.subject else { return DrawnMarks { cones: false, landings: false } };
+        let is_wide = self.median_mm(&hops.shown).is_none_or(|median_mm| median_mm >= NARROW_MM);
+        DrawnMarks { cones: is_wide, landings: is_wide }
     }
 
     /// The clearance that a hop keeps over the ground.
@@ -179,6 +216,20 @@ impl<'a> TerrainPanel<'a> {
         }
     }
 
+    /// The bends of the line, with their numbers where there is room.
+    fn bends(&self, sheet: &mut Sheet) {
+        for (number, point) in (1..).zip(&self.data.bends) {
+            let (x, y) = self.frame.place(*point);
+            sheet.dashed(&[(x, self.panel.top), (x, y)], 1.2, 0.8, BEND_PEN);
+            let text = if self.data.bends.len() > 1 { format!("bend {number}") } else { "bend".to_owned() };
+            let label = Label::new(text, (x + 0.8, self.panel.top + 1.8), SMALL_MM);
+            let (.., right, _) = label.bounds_mm();
+            if right < self.panel.right && !sheet.is_taken(&label) {
+                sheet.label(label);
+            }
+        }
+    }
+
     /// Start or goal.
     fn end(&self, sheet: &mut Sheet, point: ChainPoint, name: &str) {
         pin(sheet, &self.panel, self.frame.place(point), name, |label| self.is_buried(label));
@@ -199,12 +250,23 @@ impl<'a> TerrainPanel<'a> {
 
 /// Panel and scale for a range of x, a range of heights and margins at the two sides, below a height of the sheet.
 pub(super) fn laid_out(view_x_m: (f64, f64), heights_m: (f64, f64), sides_mm: (f64, f64), top_mm: f64) -> (Panel, Frame) {
+    laid_out_within(view_x_m, heights_m, sides_mm, top_mm, DRAWN_MM)
+}
+
+/// The same with other bounds of the drawn height: the least and the greatest, mm.
+pub(super) fn laid_out_within(
+    view_x_m: (f64, f64),
+    heights_m: (f64, f64),
+    sides_mm: (f64, f64),
+    top_mm: f64,
+    drawn_mm: (f64, f64),
+) -> (Panel, Frame) {
     let ((low_m, high_m), (before, after)) = (heights_m, sides_mm);
     let length_m = view_x_m.1 - view_x_m.0;
     // The width of the axis numbers sets the panel's left edge, and depends on the panel's scale: one estimate of it is enough.
-    let guess = Scale::new(length_m, high_m - low_m, RIGHT_MM - LEFT_MM);
+    let guess = Scale::within(length_m, high_m - low_m, RIGHT_MM - LEFT_MM, drawn_mm);
     let left = LEFT_MM.max(1.0 + left_room_mm(&height_ticks(&guess, low_m, high_m)));
-    let scale = Scale::new(length_m, high_m - low_m, RIGHT_MM - left - before - after);
+    let scale = Scale::within(length_m, high_m - low_m, RIGHT_MM - left - before - after, drawn_mm);
     let panel = Panel { left, top: top_mm, right: RIGHT_MM, bottom: top_mm + ABOVE_MM + scale.height_mm + DEPTH_MM };
     let frame = Frame {
         scale,
@@ -237,6 +299,7 @@ pub(super) fn named_axes(sheet: &mut Sheet, panel: &Panel, frame: &Frame, x_name
 pub(super) fn gap(sheet: &mut Sheet, panel: &Panel, [a, b]: [Place; 2], gap_m: f64) {
     let pen = Pen { colour: BLACK, width_mm: 0.2 };
     let y = panel.top + 5.0;
+    sheet.area(vec![(a.0, panel.top), (b.0, panel.top), (b.0, panel.bottom), (a.0, panel.bottom)], VERMILION, 0.1);
     for (x, down) in [a, b] {
         sheet.dashed(&[(x, y - 1.0), (x, down)], 0.7, 0.7, Pen { colour: AXIS, width_mm: 0.15 });
     }

@@ -339,11 +339,77 @@ fn a_path_shows_every_hop_number_limit_and_unit() {
         let count = svg.matches(&format!(">\n{words}</text>")).count();
         assert_eq!(count, 2, "hop {words} is numbered over its flight and below its bar");
     }
-    assert_eq!(svg.matches("takeoff-cone").count(), 4);
-    assert_eq!(svg.matches("takeoff-speed").count(), 4);
+    // Once for each hop; and the cone in the legend, the speed among the conditions.
+    assert_eq!(svg.matches("take-off cone").count(), 4 + 1);
+    assert_eq!(svg.matches("take-off speed").count(), 4 + 1);
     for words in ["x (m)", "z (m)", "(deg)", "3.711 m/s²", "10 m/s", "76 m", "4 hops, traversable", "J/kg", "60 to 90 deg"] {
         assert!(svg.contains(words), "{words:?} is missing");
     }
+}
+
+/// Limits are named in words that read level, and the axis of take-off angles ends at 90 degrees.
+#[test]
+fn limits_are_named_in_words_and_no_axis_is_longer_for_them() {
+    for case in cases() {
+        let labels = labels(&case);
+        for label in &labels {
+            assert!(!label.text.contains("takeoff-") && !label.text.contains("landing-"), "{}: {:?}", case.name, label.text);
+            assert!(
+                !label.turned || label.text.ends_with("(m)") || label.text.ends_with("(deg)"),
+                "{}: {:?}",
+                case.name,
+                label.text
+            );
+        }
+        let Some(name) = labels.iter().find(|label| label.text == "take-off angle (deg)") else { continue };
+        let (top, bottom) = (name.at.1 - 20.0, name.at.1 + 20.0);
+        let on_axis = |label: &&Label| label.anchor == sheet::Anchor::End && label.at.1 >= top && label.at.1 <= bottom;
+        let ticks: Vec<(f64, f64)> =
+            labels.iter().filter(on_axis).filter_map(|label| Some((label.at.1, label.text.parse().ok()?))).collect();
+        let [first, .., last] = ticks[..] else { panic!("{}: {ticks:?}", case.name) };
+        let at_top = first.1 + (last.1 - first.1) * (top - first.0) / (last.0 - first.0);
+        assert!(at_top <= 90.0 + 1e-6, "{}: the axis ends at {at_top}", case.name);
+    }
+    // Three of the limits of a hundred hops have a letter each, and the list below says which.
+    let many = cases().pop().unwrap();
+    assert!(texts(&many).contains("Limits: A "), "{}", texts(&many));
+}
+
+/// The legend has no mark that the panel has not.
+#[test]
+fn hops_too_narrow_for_cones_have_none_in_the_legend() {
+    for (case, has) in [(paper(), true), (cases().pop().unwrap(), false)] {
+        let texts = texts(&case);
+        for words in ["take-off cone\nlanding cone", "\nlanding\n"] {
+            assert_eq!(texts.contains(words), has, "{}: {words:?} in {texts}", case.name);
+        }
+        let flat = case.with(|input| draw(input).unwrap());
+        let wedges = flat
+            .sheet
+            .marks
+            .iter()
+            .filter(|mark| matches!(mark, Mark::Area { colour, opacity, .. } if *colour == palette::ORANGE && *opacity < 1.0));
+        assert_eq!(wedges.count() > 0, has, "{}", case.name);
+    }
+}
+
+/// A transect that turns has a line and a name at each of its bends.
+#[test]
+fn bends_are_marked_on_the_profile() {
+    let points: Vec<_> = (0..=12).map(|i| ChainPoint::new(5.0 * f64::from(i), 0.1 * f64::from(i % 3))).collect();
+    let at = |x: f64, y: f64| MapPoint::new(x, y);
+    let along = (0..=12).map(|i| match i {
+        0..=4 => at(5.0 * f64::from(i), 0.0),
+        5..=8 => at(20.0, 5.0 * f64::from(i - 4)),
+        _ => at(20.0 + 5.0 * f64::from(i - 8), 20.0),
+    });
+    let grounds = vec![SegmentGround::BARE; 12];
+    let chain = PolygonalChain::new(points, grounds, Some(along.collect())).unwrap();
+    assert_eq!(chain.bends().len(), 2, "two right angles");
+    let case = Case::new("Round two corners", chain, Hopper::with_speeds(10.0, 10.0).unwrap(), 3.711, (0.0, 60.0));
+    let texts = texts(&case);
+    assert!(texts.contains("bend 1") && texts.contains("bend 2") && !texts.contains("bend 3"), "{texts}");
+    assert!(!self::texts(&paper()).contains("bend"));
 }
 
 #[test]
@@ -358,11 +424,22 @@ fn a_journey_without_a_path_shows_how_far_one_gets_and_which_limits_refuse() {
     assert_eq!((stop.gap.0.x_m, stop.gap.1.x_m), (55.0, 30.0));
     let texts = texts(&case);
     for (limit, count) in frontier.refusals.ranked() {
-        assert!(texts.contains(limit.name()) && texts.contains(&count.to_string()), "{limit} {count}");
+        assert!(texts.contains(&limits::words(limit)) && texts.contains(&count.to_string()), "{limit} {count}");
     }
     let miss = frontier.nearest_miss.unwrap().conflict.to_string();
     assert!(texts.replace('\n', " ").contains(&miss), "{miss}\n{texts}");
-    assert!(texts.contains("gap 25 m") && texts.contains("no path over"));
+    assert!(texts.contains("gap 25 m") && texts.contains("no path found over"));
+    // For a manager: how far, what stops it, what would do.
+    let text = texts.replace('\n', " ");
+    for words in [
+        "gets from the start to x = 55 m, and from x = 30 m on to the goal",
+        "does not cross the gap of 25 m",
+        "What stops it at the gap: ",
+        "of the ",
+        "What would do, judged by the limit that refuses most: ",
+    ] {
+        assert!(text.contains(words), "{words:?} is missing in {text}");
+    }
     let texts = self::texts(&refused());
     for words in ["start refuses", "rest slope of", "x = 10 m"] {
         assert!(texts.contains(words), "{words:?} is missing in {texts}");

@@ -58,7 +58,8 @@ const ON_MISSING_DATA: [&str; 1] = ["--no-data"];
 /// An option, a command line without it, and one with it.
 type Trial = (&'static str, &'static [&'static str], &'static [&'static str]);
 
-const RUN: [Trial; 7] = [
+const RUN: [Trial; 8] = [
+    ("--width-mm", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--width-mm", "85"]),
     ("--report", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--report", "out/page.html"]),
     ("--trajectory", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--trajectory", "t.csv"]),
     (
@@ -111,7 +112,12 @@ const SLICE: [Trial; 8] = [
     ),
 ];
 
-const SITES: [Trial; 17] = [
+const SITES: [Trial; 18] = [
+    (
+        "--width-mm",
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--plot", "sites.svg"],
+        &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--plot", "sites.svg", "--width-mm", "85"],
+    ),
     (
         "--every",
         &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml"],
@@ -263,7 +269,12 @@ const SITES: [Trial; 17] = [
     ),
 ];
 
-const MAP: [Trial; 31] = [
+const MAP: [Trial; 32] = [
+    (
+        "--width-mm",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--plot", "map.svg"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--plot", "map.svg", "--width-mm", "85"],
+    ),
     (
         "--seen-from",
         &["map", "space.toml", "--plot", "map.svg"],
@@ -489,7 +500,25 @@ const MAP: [Trial; 31] = [
     ),
 ];
 
-const HOP: [Trial; 12] = [
+const HOP: [Trial; 13] = [
+    (
+        "--width-mm",
+        &["hop", "plate.obj", "--from", "1,1,0", "--to", "3,3,0", "--scenario", "map.toml", "--plot", "hop.svg"],
+        &[
+            "hop",
+            "plate.obj",
+            "--from",
+            "1,1,0",
+            "--to",
+            "3,3,0",
+            "--scenario",
+            "map.toml",
+            "--plot",
+            "hop.svg",
+            "--width-mm",
+            "85",
+        ],
+    ),
     (
         "--plot",
         &["hop", "plate.obj", "--from", "1,1,0", "--to", "3,3,0", "--scenario", "map.toml"],
@@ -512,7 +541,12 @@ const HOP: [Trial; 12] = [
     ("--quiet", &["hop", "scenario.toml", "--body", "bennu"], &["hop", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-const CHECK: [Trial; 16] = [
+const CHECK: [Trial; 17] = [
+    (
+        "--width-mm",
+        &["check", "scenario.toml", "--prove", "--plot", "proof.svg"],
+        &["check", "scenario.toml", "--prove", "--plot", "proof.svg", "--width-mm", "85"],
+    ),
     ("--start", &["check", "scenario.toml"], &["check", "scenario.toml", "--start", "10"]),
     ("--goal", &["check", "scenario.toml"], &["check", "scenario.toml", "--goal", "30"]),
     ("--pairs", &["check", "scenario.toml"], &["check", "scenario.toml", "--pairs", "pairs.csv"]),
@@ -539,7 +573,12 @@ const CHECK: [Trial; 16] = [
     ("--quiet", &["check", "scenario.toml", "--body", "bennu"], &["check", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-const PLAN: [Trial; 26] = [
+const PLAN: [Trial; 27] = [
+    (
+        "--width-mm",
+        &["plan", "scenario.toml", "--plot", "path.svg"],
+        &["plan", "scenario.toml", "--plot", "path.svg", "--width-mm", "85"],
+    ),
     (
         "--seen-from",
         &["plan", "space.toml", "--plot", "path.svg"],
@@ -994,7 +1033,12 @@ const REQUIRE: [Trial; 22] = [
 
 const VARY: &str = "hopper.takeoff_speed_max_m_s=6:9:2";
 
-const TRADE: [Trial; 18] = [
+const TRADE: [Trial; 19] = [
+    (
+        "--width-mm",
+        &["trade", "scenario.toml", "--vary", "hopper.takeoff_speed_max_m_s=4:10:3", "--plot", "trade.svg"],
+        &["trade", "scenario.toml", "--vary", "hopper.takeoff_speed_max_m_s=4:10:3", "--plot", "trade.svg", "--width-mm", "85"],
+    ),
     (
         "--require-all",
         &["trade", "scenario.toml", "--vary", "surface.friction_coefficient=0.05:0.6:2"],
@@ -1059,7 +1103,12 @@ const TRADE: [Trial; 18] = [
     ),
 ];
 
-const COMPARE: [Trial; 9] = [
+const COMPARE: [Trial; 10] = [
+    (
+        "--width-mm",
+        &["compare", "scenario.toml", "map.toml", "--plot", "compare.svg"],
+        &["compare", "scenario.toml", "map.toml", "--plot", "compare.svg", "--width-mm", "85"],
+    ),
     (
         "--seen-from",
         &["compare", "space.toml", "space.toml", "--plot", "both.svg"],
@@ -1092,7 +1141,12 @@ const COMPARE: [Trial; 9] = [
 ];
 
 /// Ground with all overlays, small enough for a test.
-const SIMULATE: [Trial; 31] = [
+const SIMULATE: [Trial; 32] = [
+    (
+        "--width-mm",
+        &["simulate", "errors.toml", "--plot", "trials.svg"],
+        &["simulate", "errors.toml", "--plot", "trials.svg", "--width-mm", "85"],
+    ),
     ("--trajectory", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--trajectory", "t.csv"]),
     (
         "--step-s",
@@ -1186,7 +1240,25 @@ macro_rules! stood {
     };
 }
 
-const STANCE: [Trial; 14] = [
+const STANCE: [Trial; 15] = [
+    (
+        "--width-mm",
+        &["stance", "ground.tif", "--robot", "four_legs.toml", "--at", "9,9", "--scenario", "map.toml", "--plot", "stance.svg"],
+        &[
+            "stance",
+            "ground.tif",
+            "--robot",
+            "four_legs.toml",
+            "--at",
+            "9,9",
+            "--scenario",
+            "map.toml",
+            "--plot",
+            "stance.svg",
+            "--width-mm",
+            "85",
+        ],
+    ),
     (
         "--scenario",
         &["stance", "ground.tif", "--robot", "four_legs.toml", "--at", "9,9", "--scenario", "map.toml"],
@@ -1254,7 +1326,12 @@ const STANCE: [Trial; 14] = [
 
 /// Errors of execution for trials.
 /// Without the run time on standard error, which is another one each time.
-const ARENA: [Trial; 13] = [
+const ARENA: [Trial; 14] = [
+    (
+        "--width-mm",
+        &["arena", "arena.toml", "--quiet", "--plot", "arena.svg"],
+        &["arena", "arena.toml", "--quiet", "--plot", "arena.svg", "--width-mm", "85"],
+    ),
     ("--compare", &["arena", "arena.toml", "--quiet"], &["arena", "arena.toml", "--quiet", "--compare"]),
     ("--planner", &["arena", "arena.toml", "--quiet"], &["arena", "arena.toml", "--quiet", "--planner", "grid"]),
     (

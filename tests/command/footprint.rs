@@ -81,7 +81,7 @@ fn answers_name_the_limits_of_a_footprint() {
     assert!(counts["footprint-slope"].as_u64() > Some(0) && counts["roughness"].as_u64() > Some(0), "{counts:?}");
     assert_eq!(plan["scenario"]["hopper"]["footprint_m"], 4.0);
     let picture = desk.read("p.svg");
-    for words in ["no contact: footprint-slope", "no contact: roughness", "footprint 4 m", "roughness ≤ 0.05 m"] {
+    for words in ["no contact: too steep under the footprint", "no contact: too rough", "footprint 4 m", "roughness ≤ 0.05 m"] {
         assert!(picture.contains(words), "the picture does not say {words}");
     }
     // Every contact of the plan stands clear of the kinks by half a footprint, or has ground plane enough.

@@ -369,7 +369,7 @@ fn pictures_are_complete_and_of_the_format_of_their_extension() {
     assert!(desk.read("map.svg").contains("</svg>"));
     let profiles = desk.read("hops.svg");
     assert!(profiles.trim_end().ends_with("</svg>") && profiles.contains("goal 1, hop 1 of"));
-    assert_eq!((profiles.matches("<svg ").count(), profiles.matches("</svg>").count()), (1, 1), "one sheet");
+    assert_eq!((profiles.matches("<svg ").count(), profiles.matches("</svg>").count()), (1, 1), "one page");
     desk.run(&[&MAP[..], &["--plot", "map.png"]].concat());
     assert!(fs::read(desk.path().join("map.png")).unwrap().starts_with(b"\x89PNG\r\n"));
 }

@@ -138,7 +138,7 @@ fn trials_fly_the_path_over_the_mesh() {
     let floor = desk.run(&[&args[..6], &errors, &["--success-min", "0.999"]].concat());
     assert!(floor.status == 1 && floor.stdout.contains("is not shown"), "{floor:?}");
     desk.run(&[&["simulate", "room.toml", "--trials", "50", "--plot", "trials.svg"][..], &errors].concat());
-    assert!(desk.read("trials.svg").contains("How the trials ended"));
+    assert!(desk.read("trials-2.svg").contains("How the trials ended"));
     desk.refused(
         &["simulate", "room.toml", "--plot-map", "trials.svg"],
         &["--plot-map", "this terrain is a mesh", "leave the option out"],

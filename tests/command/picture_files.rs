@@ -4,10 +4,10 @@
 
 use std::fs;
 
-use crate::desk::{Desk, FOUR_LEGS};
+use crate::desk::{ACROSS, Desk, FOUR_LEGS};
 
 /// Every option of every command that names a picture, with a command line that ends in it.
-const PICTURES: [&[&str]; 13] = [
+const PICTURES: [&[&str]; 16] = [
     &["hop", "plate.obj", "--from", "1,1,0", "--to", "3,3,0", "--scenario", "map.toml", "--plot"],
     &["plan", "scenario.toml", "--plot"],
     &["plan", "scenario.toml", "--set", "hopper.takeoff_speed_max_m_s=1", "--plot"],
@@ -21,17 +21,27 @@ const PICTURES: [&[&str]; 13] = [
     &["simulate", "map.toml", "--trials", "20", "--plot-map"],
     &["trade", "scenario.toml", "--vary", "hopper.takeoff_speed_max_m_s=4:10:3", "--plot"],
     &["compare", "scenario.toml", "map.toml", "--plot"],
+    &["sites", "ground.tif", "--every", "9", "--scenario", "map.toml", "--plot"],
+    &["stance", "ground.tif", "--robot", "legs.toml", "--at", "9,9", "--scenario", "map.toml", "--plot"],
+    &["arena", "arena.toml", "--quiet", "--plot"],
 ];
 
-#[test]
-fn a_picture_is_what_its_name_says() {
+/// The files of these commands.
+fn desk() -> Desk {
     let desk = Desk::with_dem();
+    desk.write("arena.toml", ACROSS);
     // One hop of its legs apart, without the limit that takes most of the time.
     let light: Vec<&str> = FOUR_LEGS.lines().filter(|line| !line.starts_with("spin_max")).collect();
     desk.write_legs("legs.toml", &light.join("\n"));
     let near = desk.read("map.toml").replace("goal_m = [15, 12]", "goal_m = [4, 5]\nroute = \"free\"");
     let near = near.replace("node_spacing_max_m = 1.0", "contacts_max = 10");
     desk.write("legs_map.toml", format!("[robot]\nfile = \"legs.toml\"\n\n{near}"));
+    desk
+}
+
+#[test]
+fn a_picture_is_what_its_name_says() {
+    let desk = desk();
     for line in PICTURES {
         for (name, beginning) in
             [("a.svg", &b"<svg"[..]), ("a.SVG", b"<svg"), ("a.png", b"\x89PNG\r\n\x1a\n"), ("b.Png", b"\x89PNG\r\n\x1a\n")]
@@ -53,7 +63,10 @@ fn a_picture_is_what_its_name_says() {
 #[test]
 fn no_option_for_a_picture_is_forgotten() {
     let desk = Desk::new();
-    for command in ["run", "slice", "fan", "map", "hop", "check", "plan", "simulate", "require", "trade", "compare", "synth"] {
+    let commands = [
+        "run", "slice", "fan", "map", "sites", "hop", "check", "plan", "simulate", "require", "trade", "compare", "stance", "arena",
+    ];
+    for command in commands.into_iter().chain(["batch", "report", "synth"]) {
         let help = desk.run(&[command, "--help"]).stdout;
         for (at, _) in help.match_indices("SVG or PNG") {
             let before = &help[..at];
@@ -63,4 +76,66 @@ fn no_option_for_a_picture_is_forgotten() {
         }
         assert!(!help.contains("(SVG)") && !help.contains(".svg or .png"), "{command}");
     }
+}
+
+/// `--width-mm` scales a picture of every command, and is refused where nothing is drawn.
+#[test]
+fn a_picture_has_the_width_asked_for() {
+    let desk = desk();
+    let size = |svg: &str| -> (f64, f64) {
+        let of = |name: &str| svg.split(&format!(" {name}=\"")).nth(1).unwrap().split("mm").next().unwrap().parse().unwrap();
+        (of("width"), of("height"))
+    };
+    for line in PICTURES {
+        desk.run(&[line, &["plain.svg"]].concat());
+        let ran = desk.run(&[line, &["half.svg", "--width-mm", "85"]].concat());
+        assert!(ran.status < 2, "{line:?}: {}", ran.stderr);
+        let [(_, plain), (width, half)] = ["plain.svg", "half.svg"].map(|name| size(&desk.read(name)));
+        assert_eq!(width, 85.0, "{line:?}");
+        assert!((half - 0.5 * plain).abs() <= 1.5, "{line:?}: {half} mm of {plain} mm");
+    }
+    desk.run(&["plan", "scenario.toml", "--width-mm", "85", "--plot", "half.png"]);
+    let png = fs::read(desk.path().join("half.png")).unwrap();
+    assert_eq!(u32::from_be_bytes(png[16..20].try_into().unwrap()), 1004, "300 dots an inch");
+    desk.run(&["run", "scenario.toml", "-o", "out", "--width-mm", "85"]);
+    assert!(size(&desk.read("out/path.svg")).0 == 85.0);
+    desk.refused(&["plan", "scenario.toml", "--width-mm", "85"], &["--width-mm: found no picture", "give --plot FILE.svg"]);
+    for width in ["0", "-5", "39", "1200", "wide", "NaN"] {
+        let ran = desk.run(&["plan", "scenario.toml", "--plot", "a.svg", "--width-mm", width]);
+        assert!(ran.status == 2 && ran.stderr.contains("expected a width from 40 to 1189 mm"), "{width}: {}", ran.stderr);
+    }
+    assert_eq!(desk.run(&["bodies", "--width-mm", "85"]).status, 2);
+}
+
+/// A picture of several pages is a file for each page, and the answer names them.
+#[test]
+fn every_page_has_a_file_that_the_answer_names() {
+    let desk = desk();
+    let ran = desk.run(&["simulate", "map.toml", "--trials", "20", "--plot", "trials.svg"]);
+    assert!(ran.stdout.ends_with("pages of the picture: trials.svg, trials-2.svg, trials-3.svg\n"), "{}", ran.stdout);
+    let headings = ["Trajectories and landings", "Distance error, landing by landing", "How the trials ended"];
+    for (file, heading) in ["trials.svg", "trials-2.svg", "trials-3.svg"].into_iter().zip(headings) {
+        let svg = desk.read(file);
+        assert!(svg.starts_with("<svg") && headings.iter().all(|one| svg.contains(one) == (*one == heading)), "{file}");
+    }
+    // A page is no answer of another option's file, nor of an input.
+    desk.write("taken-2.svg", "mine");
+    desk.refused(
+        &["simulate", "map.toml", "--trials", "20", "--plot", "taken.svg", "--plot-map", "taken-2.svg"],
+        &["taken-2.svg: two answers would be written to this file"],
+    );
+    assert_eq!(desk.read("taken-2.svg"), "mine");
+    let ran = desk.run(&[
+        "run",
+        "map.toml",
+        "-o",
+        "out",
+        "--set",
+        "uncertainty.trials=20",
+        "--set",
+        "uncertainty.takeoff_speed_sigma_fraction=0.01",
+    ]);
+    assert!(ran.stdout.contains("trials.svg") && ran.stdout.contains("trials-3.svg"), "{}", ran.stdout);
+    desk.run(&["run", "map.toml", "-o", "out"]);
+    assert!(!desk.path().join("out/trials-2.svg").exists() && !desk.path().join("out/trials-3.svg").exists(), "of an earlier run");
 }

@@ -195,6 +195,15 @@ fn the_figures_in_plots_are_what_their_commands_draw() {
         let output = chta(&arguments);
         assert!(matches!(output.status.code(), Some(0 | 1)), "{command}: {}", String::from_utf8_lossy(&output.stderr));
         assert!(fs::read(root().join(shipped)).unwrap() == fs::read(&redrawn).unwrap(), "{shipped} is not what `{command}` draws");
+        for number in 2.. {
+            let page = shipped.replace(".svg", &format!("-{number}.svg"));
+            let (kept, redrawn) =
+                (fs::read(root().join(&page)).ok(), fs::read(folder.path().join(format!("figure-{number}.svg"))).ok());
+            assert!(kept == redrawn, "{page} is not what `{command}` draws");
+            if kept.is_none() {
+                break;
+            }
+        }
         drawn += 1;
     }
     assert!(drawn >= 5, "plots/README.md has {drawn} commands");

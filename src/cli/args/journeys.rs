@@ -287,7 +287,7 @@ pub(crate) struct SimulateArgs {
     /// The errors that were drawn for each hop, beside its landing
     #[arg(long, requires = "output")]
     pub(crate) draws: bool,
-    /// Picture of the trials (SVG or PNG): trajectories, landing errors, outcomes, convergence
+    /// Pictures of the trials (SVG or PNG), each on a page of A4: trajectories, landing errors, outcomes with the success rate; page 2 of FILE.svg is FILE-2.svg
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     /// Picture of the landings on the map (SVG or PNG), with 95 % ellipses, for a DEM

@@ -280,7 +280,7 @@ pub(crate) struct MapArgs {
     /// The same in three dimensions (GeoJSON)
     #[arg(long, value_name = "FILE")]
     pub(crate) geojson: Option<PathBuf>,
-    /// Profile of every hop to every goal, all on one sheet (SVG or PNG), to write
+    /// Profile of every hop to every goal (SVG or PNG) to write, eight to a page of A4; page 2 of FILE.svg is FILE-2.svg
     #[arg(long, value_name = "FILE")]
     pub(crate) profiles: Option<PathBuf>,
     /// Map picture (SVG or PNG) to write

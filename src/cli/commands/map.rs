@@ -14,7 +14,7 @@ use crate::cli::{
     load::{EndOptions, load_mesh_scenario, raster_files_of},
     map_input::MapInput,
     map_outputs::MapOutputs,
-    output,
+    output, pictures,
     progress::Progress,
     threads,
     wrong_thing::Role,
@@ -48,7 +48,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let warnings = input.warned(&study.warnings, common.quiet);
     outputs.write(args, &input, &prepared, &study)?;
     let text = match format {
-        Format::Text => study.answer.text(),
+        Format::Text => study.answer.text() + &pictures::pages_text(),
         Format::Json => {
             let document = Document::new(DocumentKind::Map, document, files, warnings, study.answer.clone());
             document.on_map(prepared.projection.as_ref().ok()).to_json()?

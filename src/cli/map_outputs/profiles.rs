@@ -1,6 +1,6 @@
-//! The profiles of all hops of a map's paths, as a grid on one sheet.
+//! The profiles of all hops of a map's paths, as a grid on as many pages as they need.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use chta::{
     ballistics::limits::ClearanceProfile,
@@ -11,15 +11,15 @@ use chta::{
     terrain::MapProjection,
 };
 
-use crate::cli::{Failure, map_input::MapInput, output};
+use crate::cli::{Failure, map_input::MapInput, pictures};
 
-/// The sheet of all hops to all goals, in the format of the file's extension.
-pub(super) fn sheet(
+/// The pages of all hops to all goals, in the format of the file's extension.
+pub(super) fn pages(
     input: &MapInput,
     goal_hops: &[Option<Vec<MapHop>>],
     projection: Option<&MapProjection>,
     file: &Path,
-) -> Result<Vec<u8>, Failure> {
+) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
     let (name, scenario) = (input.title(), &input.bare.scenario);
     let mut profiles = Vec::new();
     for (goal, hops) in goal_hops.iter().enumerate() {
@@ -36,7 +36,7 @@ pub(super) fn sheet(
     };
     let caption = Caption { title: format!("Hop by hop: {name}"), lines: vec![conditions(scenario), count] };
     let figure = HopProfilesFigure { caption, clearance: ClearanceProfile::of(scenario.hopper.limits()), hops: profiles };
-    output::encoded(draw_hop_profiles(&figure), file)
+    pictures::encoded(draw_hop_profiles(&figure), file)
 }
 
 /// One hop over its slice, flown again to find its least clearance.

@@ -1,11 +1,12 @@
-//! The paths of several scenarios, overlaid.
+//! The paths of several scenarios: overlaid on a common ground, else each in a panel of its own.
 
 use plotters::style::RGBColor;
 
 use super::{
     super::{
-        FigureError, Picture,
+        Caption, FigureError, Picture,
         palette::{BLACK, BLUE, GREEN, GROUND, ORANGE, PURPLE, RIGHT_MM, SKY, SMALL_MM, VERMILION},
+        picture::{PAGE_HEIGHT_MM, PageBreak},
         sheet::{Label, Pen, Place, Sheet},
         symbols,
     },
@@ -29,10 +30,10 @@ const SAMPLE_MM: f64 = 10.0;
 /// Spacing of the legend's rows.
 const ROW_MM: f64 = 4.6;
 
-/// Draws the paths of several scenarios overlaid, each with its own colour, dashes and landing marker.
+/// Draws the paths of several scenarios, each with its own colour, dashes and landing marker.
 ///
-/// On a common ground they are drawn at their positions. On different grounds each is drawn from its own start, with the ground as
-/// a thin line in the scenario's colour.
+/// On a common ground they are overlaid at their positions. On different grounds each has a panel with its own scale, below the one before;
+/// what does not fit on a page of A4 goes on the next.
 ///
 /// # Errors
 /// [`FigureError::NoGround`] if there is no scenario, or one whose ground has fewer than two points.
@@ -45,26 +46,16 @@ pub fn draw_compare(figure: &CompareFigure) -> Result<Picture, FigureError> {
     }
     let mut sheet = Sheet::default();
     let top_mm = figure.caption.draw(&mut sheet);
-    let common = figure.scenarios.iter().all(|scenario| scenario.ground == first.ground);
-    let drawn: Vec<Drawn<'_>> = figure.scenarios.iter().enumerate().map(|(i, s)| Drawn::new(s, i, common)).collect();
-    let points = drawn.iter().flat_map(|one| one.ground.iter().copied().chain([one.start, one.goal]));
-    let profile = Profile::new(points, drawn.iter().flat_map(|one| one.flights.iter().copied()), top_mm);
-    let (x_name, y_name) = if common {
-        ("distance along the chain, x (m)", "height, z (m)")
-    } else {
-        ("distance x and height z from each scenario's own start (m)", "height, z (m)")
-    };
-    profile.axes(&mut sheet, x_name, y_name);
-    if let Some(one) = drawn.first().filter(|_| common) {
-        let surface = profile.line(&one.ground);
-        if let (Some(&first), Some(&last)) = (surface.first(), surface.last()) {
-            let base = [(last.0, profile.panel.bottom), (first.0, profile.panel.bottom)];
-            sheet.area(surface.iter().copied().chain(base).collect(), GROUND, 1.0);
-        }
-        sheet.line(surface, symbols::SURFACE_PEN);
+    let drawn: Vec<Drawn<'_>> = figure.scenarios.iter().enumerate().map(|(i, s)| Drawn::new(s, i)).collect();
+    if figure.scenarios.iter().any(|scenario| scenario.ground != first.ground) {
+        return Ok(multiples(sheet, figure, &drawn, top_mm));
     }
+    let points = drawn.iter().flat_map(|one| one.scenario.ground.iter().copied().chain([one.scenario.start, one.scenario.goal]));
+    let profile = Profile::new(points, drawn.iter().flat_map(|one| one.flights.iter().copied()), top_mm);
+    profile.axes(&mut sheet, X_NAME, Z_NAME);
+    ground(&mut sheet, &profile, &first.ground);
     for one in &drawn {
-        one.draw(&mut sheet, &profile, !common);
+        one.draw(&mut sheet, &profile);
     }
     ends(&mut sheet, &profile, &drawn);
     profile.panel.outline(&mut sheet);
@@ -72,33 +63,62 @@ pub fn draw_compare(figure: &CompareFigure) -> Result<Picture, FigureError> {
     Ok(Picture::page(sheet, end_mm + 2.0))
 }
 
+const X_NAME: &str = "distance along the chain, x (m)";
+const Z_NAME: &str = "height, z (m)";
+/// The least and the greatest drawn height of one panel among several.
+const MULTIPLE_MM: (f64, f64) = (12.0, 38.0);
+
+/// A panel for each scenario, with its line of the legend above it.
+fn multiples(mut sheet: Sheet, figure: &CompareFigure, drawn: &[Drawn<'_>], top_mm: f64) -> Picture {
+    let (mut breaks, mut page_mm, mut y) = (Vec::new(), 0.0, top_mm);
+    for one in drawn {
+        let ComparedScenario { ground: line, start, goal, .. } = one.scenario;
+        let laid_out = |y: f64| {
+            let points = line.iter().copied().chain([*start, *goal]);
+            Profile::within(points, one.flights.iter().copied(), y + ROW_MM, MULTIPLE_MM)
+        };
+        if laid_out(y).end_mm() + 2.0 > page_mm + PAGE_HEIGHT_MM && y > page_mm + top_mm {
+            page_mm = y.ceil();
+            breaks.push(PageBreak::at(&sheet, page_mm));
+            y = Caption { title: figure.caption.title.clone(), lines: Vec::new() }.draw_from(&mut sheet, page_mm);
+        }
+        let profile = laid_out(y);
+        legend(&mut sheet, std::slice::from_ref(one), y + 0.5 * ROW_MM - 0.6);
+        profile.axes(&mut sheet, X_NAME, Z_NAME);
+        ground(&mut sheet, &profile, line);
+        one.draw(&mut sheet, &profile);
+        for (at, name) in [(*start, "start"), (*goal, "goal")] {
+            profile.pin(&mut sheet, line, at, name);
+        }
+        profile.panel.outline(&mut sheet);
+        y = profile.end_mm() + 2.0;
+    }
+    Picture { breaks, ..Picture::page(sheet, y) }
+}
+
+/// The ground below a panel's surface.
+fn ground(sheet: &mut Sheet, profile: &Profile, ground: &[ChainPoint]) {
+    let surface = profile.line(ground);
+    if let (Some(&first), Some(&last)) = (surface.first(), surface.last()) {
+        let base = [(last.0, profile.panel.bottom), (first.0, profile.panel.bottom)];
+        sheet.area(surface.iter().copied().chain(base).collect(), GROUND, 1.0);
+    }
+    sheet.line(surface, symbols::SURFACE_PEN);
+}
+
 /// One scenario as it is drawn.
 struct Drawn<'a> {
     scenario: &'a ComparedScenario,
     index: usize,
-    ground: Vec<ChainPoint>,
-    start: ChainPoint,
-    goal: ChainPoint,
     flights: Vec<Flight>,
     /// Every n-th flight is shown.
     every: usize,
 }
 
 impl<'a> Drawn<'a> {
-    /// A point at its position, or moved so that the scenario starts at the origin.
-    fn new(scenario: &'a ComparedScenario, index: usize, in_place: bool) -> Self {
-        let origin = if in_place { ChainPoint::new(0.0, 0.0) } else { scenario.start };
-        let moved = |point: ChainPoint| ChainPoint::new(point.x_m - origin.x_m, point.z_m - origin.z_m);
+    fn new(scenario: &'a ComparedScenario, index: usize) -> Self {
         let (flights, every) = profile::shown(&scenario.flights);
-        Self {
-            scenario,
-            index,
-            ground: scenario.ground.iter().copied().map(moved).collect(),
-            start: moved(scenario.start),
-            goal: moved(scenario.goal),
-            flights: flights.into_iter().map(|f| Flight { from: moved(f.from), to: moved(f.to), ..f }).collect(),
-            every,
-        }
+        Self { scenario, index, flights, every }
     }
 
     fn colour(&self) -> RGBColor {
@@ -133,12 +153,8 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    /// Its flights with their landings, and its ground if that is not common.
-    fn draw(&self, sheet: &mut Sheet, profile: &Profile, own_ground: bool) {
-        if own_ground {
-            let pen = Pen { colour: self.colour(), width_mm: 0.2 };
-            sheet.line(profile.line(&self.ground), pen);
-        }
+    /// Its flights with their landings.
+    fn draw(&self, sheet: &mut Sheet, profile: &Profile) {
         for flight in &self.flights {
             self.line(sheet, profile.flight(flight), 0.4);
         }
@@ -170,7 +186,9 @@ const TEXT_LEFT_MM: f64 = LEFT_MM + SAMPLE_MM + 1.5;
 fn ends(sheet: &mut Sheet, profile: &Profile, drawn: &[Drawn<'_>]) {
     let Some(first) = drawn.first() else { return };
     let mut pinned: Vec<ChainPoint> = Vec::new();
-    for (name, of) in [("start", (|one: &Drawn<'_>| one.start) as fn(&Drawn<'_>) -> ChainPoint), ("goal", |one| one.goal)] {
+    for (name, of) in
+        [("start", (|one: &Drawn<'_>| one.scenario.start) as fn(&Drawn<'_>) -> ChainPoint), ("goal", |one| one.scenario.goal)]
+    {
         let shared = drawn.iter().all(|one| of(one) == of(first));
         for one in drawn.iter().take(if shared { 1 } else { MOST_NAMED }) {
             if pinned.contains(&of(one)) {
@@ -180,7 +198,7 @@ fn ends(sheet: &mut Sheet, profile: &Profile, drawn: &[Drawn<'_>]) {
             let same: Vec<String> =
                 drawn.iter().filter(|other| of(other) == of(one)).map(|other| (other.index + 1).to_string()).collect();
             let text = if shared { name.to_owned() } else { fitted(&format!("{name} {}", same.join(", ")), SMALL_MM, 30.0) };
-            profile.pin(sheet, &one.ground, of(one), &text);
+            profile.pin(sheet, &one.scenario.ground, of(one), &text);
         }
     }
 }
@@ -194,7 +212,7 @@ fn legend(sheet: &mut Sheet, drawn: &[Drawn<'_>], top_mm: f64) -> f64 {
     for one in drawn {
         one.line(sheet, vec![(LEFT_MM, y), (LEFT_MM + SAMPLE_MM, y)], 0.5);
         one.mark(sheet, (LEFT_MM + 0.5 * SAMPLE_MM, y));
-        let number = if drawn.len() > 1 { format!("{}. ", one.index + 1) } else { String::new() };
+        let number = format!("{}. ", one.index + 1);
         sheet.label(Label::new(
             fitted(&(number + &one.text()), SMALL_MM, RIGHT_MM - TEXT_LEFT_MM + 4.0),
             (TEXT_LEFT_MM, y),

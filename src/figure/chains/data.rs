@@ -83,7 +83,7 @@ pub struct ProofFigure {
 /// One capability of a trade.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TradeAxis {
-    /// The varied key with its unit, such as `hopper.takeoff_speed_max_m_s (m/s)`.
+    /// What is varied, in words and with its unit, such as `greatest take-off speed (m/s)`.
     pub name: String,
     /// The values, in ascending order.
     pub values: Vec<f64>,
@@ -134,8 +134,7 @@ pub struct ComparedScenario {
     pub flights: Vec<Flight>,
 }
 
-/// Several scenarios with their paths overlaid. On a common ground they are drawn at their positions, otherwise each from its own
-/// start.
+/// Several scenarios: with their paths overlaid on a common ground, otherwise each in a panel of its own.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CompareFigure {
     /// The caption.

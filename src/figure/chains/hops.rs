@@ -1,4 +1,4 @@
-//! A sheet with the profiles of all hops of paths over a map: a grid of small panels, each with its numbers.
+//! The profiles of all hops of paths over a map: a grid of small panels, each with its numbers, on as many pages as they need.
 
 use super::{
     super::{
@@ -6,7 +6,8 @@ use super::{
         axes::{Panel, left_room_mm},
         clearance,
         keys::{self, Swatch},
-        palette::{BLUE, GREEN, GROUND, PAGE_WIDTH_MM, SMALL_MM, TEXT_MM, VERMILION},
+        palette::{BLUE, GREEN, GROUND, SMALL_MM, TEXT_MM, VERMILION},
+        picture::{PAGE_HEIGHT_MM, PageBreak, paragraph},
         scale::{Frame, Scale},
         sheet::{Label, Pen, Place, Sheet},
         symbols,
@@ -44,12 +45,14 @@ pub struct HopProfilesFigure {
     pub hops: Vec<HopProfile>,
 }
 
-/// Width and height of a hop's cell, with text, panel and the space around.
-const CELL_MM: (f64, f64) = (82.0, 62.0);
+/// Width and height of a hop's cell, with text, panel and the space around: four rows to a page, with the caption or the page's number.
+const CELL_MM: (f64, f64) = (82.0, 56.5);
+/// Columns of a page.
+const COLUMNS: usize = 2;
 /// Space right of a cell.
 const GAP_MM: f64 = 5.0;
 /// Height of the panel.
-const PANEL_MM: f64 = 32.0;
+const PANEL_MM: f64 = 27.5;
 /// Space above the drawing, below it and at its sides.
 const ABOVE_MM: f64 = 4.0;
 const BELOW_MM: f64 = 5.0;
@@ -58,10 +61,10 @@ const BESIDE_MM: f64 = 3.0;
 const FLAT_MM: f64 = 6.0;
 /// Spacing of the text lines.
 const LINE_MM: f64 = 3.6;
+/// Space above the first line of a page.
+const TOP_MM: f64 = 3.0;
 /// Margin around the grid.
 const MARGIN_MM: f64 = 4.0;
-/// Greatest ratio of the sheet's height to its width.
-const SLENDER: f64 = 1.95;
 
 const FLIGHT_PEN: Pen = Pen { colour: BLUE, width_mm: 0.35 };
 const REQUIRED_PEN: Pen = Pen { colour: GREEN, width_mm: 0.25 };
@@ -72,35 +75,39 @@ const DASHES_MM: (f64, f64) = (1.2, 0.7);
 /// Draws the profiles of hops as a grid: for each its number, its ends on the map, distance and heading, speeds and angles at both
 /// ends, and the flight over the ground with the point of least clearance.
 ///
-/// The number of columns keeps the sheet no higher than about twice its width. A sheet of one or two columns is 170 mm wide.
+/// Two columns; what does not fit on a page of A4 goes on the next, eight hops or fewer to a page.
 ///
 /// # Errors
 /// [`FigureError::NoGround`] if the ground of a hop has fewer than two points.
 pub fn draw_hop_profiles(figure: &HopProfilesFigure) -> Result<Picture, FigureError> {
     let mut sheet = Sheet::default();
     let head_mm = figure.caption.draw(&mut sheet);
-    let head_mm = keys::draw(&mut sheet, &entries(figure), head_mm + 2.0) + 3.0;
-    let (columns, width_mm) = columns(figure.hops.len(), head_mm);
-    for (i, hop) in figure.hops.iter().enumerate() {
-        check_ground(&hop.name, &hop.ground)?;
-        let (row, column) = (i / columns, i % columns);
-        cell(&mut sheet, hop, figure.clearance, (MARGIN_MM + float(column) * CELL_MM.0, head_mm + float(row) * CELL_MM.1));
+    let mut row_mm = keys::draw(&mut sheet, &entries(figure), head_mm + 2.0) + 3.0;
+    let pages = pages(figure.hops.len(), row_mm);
+    let (mut breaks, mut page_mm) = (Vec::new(), 0.0);
+    for row in figure.hops.chunks(COLUMNS) {
+        if row_mm + CELL_MM.1 > page_mm + PAGE_HEIGHT_MM {
+            // All pages but the last have the height of a page.
+            page_mm += PAGE_HEIGHT_MM;
+            breaks.push(PageBreak::at(&sheet, page_mm));
+            let text = format!("{} (page {} of {pages})", figure.caption.title, breaks.len() + 1);
+            row_mm = paragraph(&mut sheet, &fitted(&text, TEXT_MM, 140.0), TEXT_MM, true, page_mm + TOP_MM) + 3.0;
+        }
+        for (hop, column) in row.iter().zip([0.0, 1.0]) {
+            check_ground(&hop.name, &hop.ground)?;
+            cell(&mut sheet, hop, figure.clearance, (MARGIN_MM + column * CELL_MM.0, row_mm));
+        }
+        row_mm += CELL_MM.1;
     }
-    let height_mm = (head_mm + float(figure.hops.len().div_ceil(columns)) * CELL_MM.1 + 1.0).ceil();
-    Ok(Picture { sheet, width_mm, height_mm })
+    Ok(Picture { breaks, ..Picture::page(sheet, (row_mm + 1.0).ceil()) })
 }
 
-#[expect(clippy::cast_precision_loss, reason = "rows and columns of a sheet")]
-const fn float(count: usize) -> f64 {
-    count as f64
-}
-
-/// The least number of columns that keeps the sheet within its greatest ratio of height to width, and the sheet's width.
-fn columns(hops: usize, head_mm: f64) -> (usize, f64) {
-    let width_mm = |columns: usize| PAGE_WIDTH_MM.max((2.0 * MARGIN_MM + float(columns) * CELL_MM.0).ceil());
-    let is_slender = |columns: usize| head_mm + float(hops.div_ceil(columns)) * CELL_MM.1 > SLENDER * width_mm(columns);
-    let columns = (2..=hops.max(2)).find(|&columns| !is_slender(columns)).unwrap_or(hops.max(2));
-    (columns, width_mm(columns))
+/// The pages of so many hops, whose first row on the first page begins at a height.
+fn pages(hops: usize, first_mm: f64) -> usize {
+    let rows = hops.div_ceil(COLUMNS);
+    let fit = |from_mm: f64| (1..).take_while(|row| from_mm + f64::from(*row) * CELL_MM.1 <= PAGE_HEIGHT_MM).count();
+    let next_mm = TOP_MM + 1.4 * TEXT_MM + 3.0;
+    1 + rows.saturating_sub(fit(first_mm)).div_ceil(fit(next_mm).max(1))
 }
 
 /// The legend, with the symbols that occur on the sheet.

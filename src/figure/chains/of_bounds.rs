@@ -1,6 +1,9 @@
 //! The data of a proof's picture, from the bounds and the chain.
 
-use super::{super::Caption, Flight, ProofClass, ProofFigure, ProofGap, ProofStretch};
+use super::{
+    super::{Caption, limits},
+    Flight, ProofClass, ProofFigure, ProofGap, ProofStretch,
+};
 use crate::{
     chain::{PolygonalChain, Station},
     graph::proof::{Bounds, Gap, Stretch, StretchClass},
@@ -28,7 +31,7 @@ impl From<StretchClass> for ProofClass {
 
 impl From<&Gap> for ProofGap {
     fn from(gap: &Gap) -> Self {
-        let refusals = gap.refusals.ranked().into_iter().map(|(limit, count)| (limit.name().to_owned(), count)).collect();
+        let refusals = gap.refusals.ranked().into_iter().map(|(limit, count)| (limits::words(limit), count)).collect();
         Self { reached_x_m: gap.reached_x_m, leads_to_goal_x_m: gap.leads_to_goal_x_m, refusals }
     }
 }

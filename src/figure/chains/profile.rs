@@ -5,7 +5,7 @@ use super::{
         FigureError, MOST_HOPS_DRAWN,
         axes::{BELOW_MM, Panel},
         palette::RIGHT_MM,
-        scale::Frame,
+        scale::{DRAWN_MM, Frame},
         sheet::{Label, Place, Sheet, text_width_mm},
         terrain_panel::{self, BESIDE_MM, thinned},
     },
@@ -56,6 +56,16 @@ pub(super) struct Profile {
 impl Profile {
     /// Lays out a panel below a height of the sheet that holds points and flights.
     pub(super) fn new(points: impl Iterator<Item = ChainPoint>, flights: impl Iterator<Item = Flight>, top_mm: f64) -> Self {
+        Self::within(points, flights, top_mm, DRAWN_MM)
+    }
+
+    /// The same with other bounds of the drawn height: the least and the greatest, mm.
+    pub(super) fn within(
+        points: impl Iterator<Item = ChainPoint>,
+        flights: impl Iterator<Item = Flight>,
+        top_mm: f64,
+        drawn_mm: (f64, f64),
+    ) -> Self {
         let none = (f64::INFINITY, f64::NEG_INFINITY);
         let wider = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
         let (mut along, mut heights) = points.fold((none, none), |(x, z), point| (wider(x, point.x_m), wider(z, point.z_m)));
@@ -67,7 +77,7 @@ impl Profile {
             // Points at the same x still need a scale.
             along = (along.0 - 0.5, along.1 + 0.5);
         }
-        let (panel, frame) = terrain_panel::laid_out(along, heights, (BESIDE_MM, BESIDE_MM), top_mm);
+        let (panel, frame) = terrain_panel::laid_out_within(along, heights, (BESIDE_MM, BESIDE_MM), top_mm, drawn_mm);
         Self { panel, frame }
     }
 

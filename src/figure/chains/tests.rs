@@ -295,7 +295,12 @@ fn comparisons_name_every_scenario_with_verdict_and_hops() {
     let other = vec![scenario("Here", waves(500.0, 101, 5.0), 9.0, 10), scenario("There", waves(-40.0, 131, 2.0), 18.0, 5)];
     let figure = CompareFigure { scenarios: other, ..figure };
     let picture = check_picture("compare-grounds", || draw_compare(&figure).unwrap());
-    assert_says(&picture, &["distance x and height z from each scenario's own start (m)", "goal 1", "goal 2", "start"]);
+    assert_says(&picture, &["1. Here: traversable, 10 hops", "2. There: traversable, 5 hops", "goal", "start"]);
+    assert_eq!(texts(&picture).matches("distance along the chain, x (m)").count(), 2, "a panel each");
+    // More than fit on a page.
+    let many: Vec<_> = (0..9).map(|i| scenario(&format!("Ground {i}"), waves(0.0, 101 + i, 5.0), 9.0, 10)).collect();
+    let picture = check_picture("compare-pages", || draw_compare(&CompareFigure { scenarios: many.clone(), ..figure.clone() }).unwrap());
+    assert!(picture.pages().len() > 1 && picture.pages().iter().all(|page| texts(page).starts_with("Hoppers")));
 }
 
 #[test]
@@ -365,8 +370,8 @@ fn hop_profile(i: usize, hops: usize) -> HopProfile {
 }
 
 #[test]
-fn sheets_of_hops_are_grids_within_their_aspect_ratio() {
-    for (hops, clearance_m) in [(0, 0.0), (1, 0.5), (3, 0.0), (36, 0.5), (300, 0.0)] {
+fn profiles_of_many_hops_are_on_pages_of_a4() {
+    for (hops, pages, clearance_m) in [(0, 1, 0.0), (1, 1, 0.5), (8, 1, 0.0), (9, 2, 0.0), (36, 5, 0.5), (215, 27, 0.0)] {
         let caption = Caption::new("Hop by hop", "Moon, g = 1.624 m/s²");
         let figure = HopProfilesFigure {
             caption,
@@ -374,21 +379,27 @@ fn sheets_of_hops_are_grids_within_their_aspect_ratio() {
             hops: (0..hops).map(|i| hop_profile(i, hops)).collect(),
         };
         let picture = draw_hop_profiles(&figure).unwrap();
-        check_well_formed(&picture.to_svg().unwrap());
-        assert_eq!(picture.height_mm, picture.height_mm.round());
-        let slender = picture.height_mm / picture.width_mm;
-        assert!(slender <= 1.96 && (hops < 36 || slender > 1.0), "{hops} hops: {slender}");
-        // rsvg-convert refuses more than 32 767 pixels a side.
-        assert!(1400.0 * slender < 32_000.0);
-        let lettering = texts(&picture);
-        assert_eq!(lettering.lines().filter(|line| line.contains(&format!(" of {hops}"))).count(), hops);
-        assert_eq!(lettering.contains("clearance asked for: 0.5 m"), clearance_m > 0.0);
-        let labels = labels(&picture);
-        for label in &labels {
-            let (left, top, right, bottom) = label.bounds_mm();
-            let is_inside = left > 0.3 && right < picture.width_mm - 0.3 && top > 0.3 && bottom < picture.height_mm;
-            assert!(is_inside, "{hops} hops: {:?} leaves the page", label.text);
+        let drawn = picture.pages();
+        assert_eq!(drawn.len(), pages, "{hops} hops");
+        let mut next = 1;
+        for (i, page) in drawn.iter().enumerate() {
+            check_well_formed(&page.to_svg().unwrap());
+            assert!(page.width_mm == 170.0 && page.height_mm <= 257.0, "{} x {}", page.width_mm, page.height_mm);
+            let lettering = texts(page);
+            assert_eq!(lettering.contains(&format!("(page {} of {pages})", i + 1)), i > 0, "{lettering}");
+            // Every hop once, in order.
+            for line in lettering.lines().filter(|line| line.contains(&format!(" of {hops}")) && line.starts_with("goal")) {
+                assert_eq!(line, format!("goal 1, hop {next} of {hops}"));
+                next += 1;
+            }
+            for label in labels(page) {
+                let (left, top, right, bottom) = label.bounds_mm();
+                let is_inside = left > 0.3 && right < page.width_mm - 0.3 && top > 0.3 && bottom < page.height_mm;
+                assert!(is_inside, "{hops} hops, page {}: {:?} leaves the page", i + 1, label.text);
+            }
         }
+        assert_eq!(next, hops + 1);
+        assert_eq!(texts(&picture).contains("clearance asked for: 0.5 m"), clearance_m > 0.0);
     }
     let figure = HopProfilesFigure {
         caption: Caption::default(),

@@ -49,6 +49,8 @@ const MOST_PLANNED_POINTS: usize = 2500;
 const MOST_MARKED_HOPS: usize = 60;
 /// Above this number of landings only those of every n-th trial are drawn.
 const MOST_LANDINGS: usize = 600;
+/// A flight is drawn with so many chords at least, however many there are.
+const LEAST_PIECES: f64 = 6.0;
 /// Greatest deviation of a drawn flight from the parabola.
 const FLATNESS_MM: f64 = 0.025;
 /// The fractional part of the golden ratio, which spreads the dots of a row evenly and reproducibly.
@@ -179,11 +181,10 @@ impl View {
 
     /// Each trial as one line; failed trials over successful ones, each with a cross at the end of its last flight.
     fn trials(&self, sheet: &mut Sheet, bundle: &Bundle<'_>) {
-        let mut left = MOST_POINTS;
+        let most = MOST_POINTS / bundle.shown.len().max(1);
         for reached in [true, false] {
             for trial in bundle.shown.iter().filter(|trial| trial.reached == reached) {
-                let points = self.line(&trial.flights, left);
-                left = left.saturating_sub(points.len());
+                let points = self.line(&trial.flights, most);
                 if points.len() > 1 {
                     sheet.line(points, if reached { REACHED_PEN } else { FAILED_PEN });
                 }
@@ -212,26 +213,20 @@ impl View {
         }
     }
 
-    /// Consecutive flights as one line, coarser if the budget of points is small.
+    /// Consecutive flights as one line through all their ends, coarser if the budget of points is small.
     fn line(&self, flights: &[Flight], most: usize) -> Vec<Place> {
         let mut points = Vec::new();
+        let finest = (number(most as u64) / number(flights.len().max(1) as u64)).floor().clamp(LEAST_PIECES, 60.0);
         for flight in flights.iter().filter(|flight| is_finite(flight)) {
             let bow_mm = 0.25 * bow_m(flight).abs() * self.frame.scale.mm_per_m * self.frame.scale.exaggeration;
-            let pieces = (bow_mm / FLATNESS_MM).sqrt().ceil().clamp(2.0, 60.0);
+            let pieces = (bow_mm / FLATNESS_MM).sqrt().ceil().clamp(2.0, finest);
             let mut i = 0.0;
             while i <= pieces {
                 points.push(self.frame.place(point_at(flight, i / pieces)));
                 i += 1.0;
             }
         }
-        let points = thinned(&points);
-        // Every n-th point, and always the last one.
-        let every = points.len().div_ceil(most.max(32));
-        if every <= 1 {
-            return points;
-        }
-        let last = points.last().copied();
-        points.iter().step_by(every).copied().chain(last).collect()
+        thinned(&points)
     }
 
     /// A dot for each landing in its hop's row.

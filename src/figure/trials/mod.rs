@@ -25,7 +25,7 @@ use super::{
     Caption, FigureError, Picture,
     keys::{self, Swatch},
     palette::SMALL_MM,
-    picture::paragraph,
+    picture::{PageBreak, paragraph},
     sheet::Sheet,
 };
 
@@ -35,32 +35,73 @@ const BELOW_MM: f64 = 3.0;
 /// A panel: where it ends, and its legend.
 type Drawn = (f64, Vec<(Swatch, String)>);
 
-/// Draws all available data of a simulation on one sheet: trajectories, box plots, outcomes, convergence.
+/// Draws all available data of a simulation, each figure on a page of its own: trajectories, box plots, outcomes with convergence.
+///
+/// A figure without data is left out. Every page has the title, and the first page all of the caption.
 ///
 /// # Errors
 /// [`FigureError::NoGround`] if there are trajectories over a ground of fewer than two points.
 pub fn draw_simulation(figure: &SimulationFigure) -> Result<Picture, FigureError> {
-    let mut sheet = Sheet::default();
-    let mut end_mm = figure.caption.draw(&mut sheet);
+    let mut pages = Pages::new(&figure.caption);
     if let Some(flown) = &figure.flown {
-        end_mm = panel(&mut sheet, "Trajectories and landings", end_mm, |sheet, top| flown::draw(sheet, flown, top))?;
+        pages.begin();
+        pages.panel("Trajectories and landings", |sheet, top| flown::draw(sheet, flown, top))?;
     }
-    if figure.errors.iter().any(|boxes| !boxes.landings.is_empty()) {
-        end_mm = panel(&mut sheet, "Distance error, landing by landing", end_mm, |sheet, top| {
-            Ok(boxes::draw(sheet, &figure.errors, top))
-        })?;
+    if figure.errors.iter().flat_map(|boxes| &boxes.landings).any(boxes::is_drawable) {
+        pages.begin();
+        pages.panel("Distance error, landing by landing", |sheet, top| Ok(boxes::draw(sheet, &figure.errors, top)))?;
     }
-    if !figure.outcomes.is_empty() {
-        end_mm = panel(&mut sheet, "How the trials ended", end_mm, |sheet, top| Ok(outcomes::draw(sheet, &figure.outcomes, top)))?;
+    if figure.outcomes.iter().flat_map(|bars| &bars.counts).any(|(_, count)| *count > 0) {
+        pages.begin();
+        pages.panel("How the trials ended", |sheet, top| Ok(outcomes::draw(sheet, &figure.outcomes, top)))?;
+        if figure.outcomes.iter().any(|bars| bars.convergence.len() > 1) {
+            let text = "Success rate after so many trials, with its 95 % band";
+            pages.panel(text, |sheet, top| Ok(convergence::draw(sheet, &figure.outcomes, top)))?;
+        } else if figure.outcomes.iter().any(|bars| !bars.convergence.is_empty()) {
+            let text = "The success rate over the number of trials is not drawn: it is noted after 10 trials for the first time.";
+            pages.end_mm = paragraph(&mut pages.sheet, text, SMALL_MM, false, pages.end_mm + 1.0) + BELOW_MM;
+        }
     }
-    if figure.outcomes.iter().any(|bars| bars.convergence.len() > 1) {
-        let text = "Success rate after so many trials, with its 95 % band";
-        end_mm = panel(&mut sheet, text, end_mm, |sheet, top| Ok(convergence::draw(sheet, &figure.outcomes, top)))?;
-    } else if figure.outcomes.iter().any(|bars| !bars.convergence.is_empty()) {
-        let text = "The success rate over the number of trials is not drawn: it is noted after 10 trials for the first time.";
-        end_mm = paragraph(&mut sheet, text, SMALL_MM, false, end_mm + 1.0) + BELOW_MM;
+    Ok(Picture { breaks: pages.breaks, ..Picture::page(pages.sheet, pages.end_mm) })
+}
+
+/// The pages of a simulation as they are drawn, one below the other.
+struct Pages<'a> {
+    sheet: Sheet,
+    end_mm: f64,
+    breaks: Vec<PageBreak>,
+    title: &'a str,
+    /// Whether there is a figure below the caption.
+    is_begun: bool,
+}
+
+impl<'a> Pages<'a> {
+    fn new(caption: &'a Caption) -> Self {
+        let mut sheet = Sheet::default();
+        let end_mm = caption.draw(&mut sheet);
+        Self { sheet, end_mm, breaks: Vec::new(), title: &caption.title, is_begun: false }
     }
-    Ok(Picture::page(sheet, end_mm))
+
+    /// Begins a figure: the first below the caption, every further one on a page of its own.
+    fn begin(&mut self) {
+        if std::mem::replace(&mut self.is_begun, true) {
+            // Whole millimetres, since a page is as high as that.
+            self.end_mm = self.end_mm.ceil();
+            self.breaks.push(PageBreak::at(&self.sheet, self.end_mm));
+            self.end_mm = Caption { title: self.title.to_owned(), lines: Vec::new() }.draw_from(&mut self.sheet, self.end_mm);
+        }
+    }
+
+    /// Draws a panel with its heading and its legend.
+    fn panel(
+        &mut self,
+        heading: &str,
+        draw: impl FnOnce(&mut Sheet, f64) -> Result<Drawn, FigureError>,
+    ) -> Result<(), FigureError> {
+        let top_mm = diagram::heading(&mut self.sheet, heading, self.end_mm + 1.0);
+        self.end_mm = with_legend(&mut self.sheet, top_mm, draw)?;
+        Ok(())
+    }
 }
 
 /// Draws the trajectories of trials over the terrain, with the planned path on top, and below them the landings hop by hop.
@@ -133,17 +174,6 @@ fn alone(caption: &Caption, draw: impl FnOnce(&mut Sheet, f64) -> Result<Drawn, 
     let top_mm = caption.draw(&mut sheet) + 1.0;
     let height_mm = with_legend(&mut sheet, top_mm, draw)?;
     Ok(Picture::page(sheet, height_mm))
-}
-
-/// One panel among several; returns where it ends.
-fn panel(
-    sheet: &mut Sheet,
-    heading: &str,
-    top_mm: f64,
-    draw: impl FnOnce(&mut Sheet, f64) -> Result<Drawn, FigureError>,
-) -> Result<f64, FigureError> {
-    let top_mm = diagram::heading(sheet, heading, top_mm + 1.0);
-    with_legend(sheet, top_mm, draw)
 }
 
 /// A panel with its legend below.

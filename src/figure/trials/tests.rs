@@ -111,7 +111,7 @@ fn lines_of(picture: &Picture, colour: plotters::style::RGBColor) -> Vec<&[(f64,
 }
 
 #[test]
-fn a_simulation_is_one_sheet_of_all_panels() {
+fn a_simulation_is_a_page_for_each_figure() {
     for (name, policies) in [("simulation_one", &["open-loop"][..]), ("simulation_two", &["open-loop", "replan"])] {
         let figure = simulation(policies, 6, 60);
         let picture = check_picture(name, || draw_simulation(&figure).unwrap());
@@ -129,6 +129,14 @@ fn a_simulation_is_one_sheet_of_all_panels() {
         for policy in policies {
             assert!(texts.contains(&format!("{policy}: 10000 trials")), "{texts}");
         }
+        let pages = picture.pages();
+        let headings = ["Trajectories and landings", "Distance error, landing by landing", "How the trials ended"];
+        assert_eq!(pages.len(), headings.len());
+        for (page, heading) in pages.iter().zip(headings) {
+            let texts = super::super::samples::texts(page);
+            assert!(headings.iter().all(|one| texts.contains(one) == (*one == heading)), "{name}: {heading} and {texts}");
+            assert!(texts.starts_with(&figure.caption.title) && page.pages().len() == 1, "{texts}");
+        }
     }
 }
 
@@ -138,6 +146,10 @@ fn absent_data_is_omitted_from_the_sheet() {
     let no_flights = SimulationFigure { flown: None, ..whole.clone() };
     let picture = check_picture("simulation_without_flights", || draw_simulation(&no_flights).unwrap());
     assert!(!texts(&picture).contains("Trajectories"), "{}", texts(&picture));
+    let mut no_landings = no_flights.clone();
+    no_landings.errors[0].landings.iter_mut().for_each(|landing| landing.count = 0);
+    let picture = check_picture("simulation_without_landings", || draw_simulation(&no_landings).unwrap());
+    assert!(!texts(&picture).contains("Distance error") && picture.pages().len() == 1, "an empty panel: {}", texts(&picture));
     let empty = SimulationFigure { caption: caption(), ..SimulationFigure::default() };
     let mut few = bars("open-loop", 3, 4);
     few.convergence.drain(..39);
