@@ -1092,7 +1092,7 @@ const COMPARE: [Trial; 9] = [
 ];
 
 /// Ground with all overlays, small enough for a test.
-const SIMULATE: [Trial; 31] = [
+const SIMULATE: [Trial; 32] = [
     ("--trajectory", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--trajectory", "t.csv"]),
     (
         "--step-s",
@@ -1132,6 +1132,11 @@ const SIMULATE: [Trial; 31] = [
         "--density",
         &["simulate", "map.toml", "--trials", "20"],
         &["simulate", "map.toml", "--trials", "20", "--density", "rests.tif"],
+    ),
+    (
+        "--plot-density",
+        &["simulate", "map.toml", "--trials", "20"],
+        &["simulate", "map.toml", "--trials", "20", "--plot-density", "rests.svg"],
     ),
     (
         "--within",
@@ -1588,6 +1593,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 "--plot-postures",
                 "--plot-map",
                 "--density",
+                "--plot-density",
                 "--pairs",
                 "--starts",
                 "--amount-output",
