@@ -61,6 +61,7 @@ fn main() {
         returns: false,
         mobility: false,
         predecessors: false,
+        refusals: false,
         trials: false,
         hops_max: None,
         amounts: Vec::new(),

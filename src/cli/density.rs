@@ -1,4 +1,4 @@
-//! The raster of where trials rest.
+//! The raster and the picture of where trials rest.
 
 use std::path::Path;
 
@@ -9,13 +9,20 @@ use chta::{
     uncertainty::RestDensity,
 };
 
-use super::{Failure, output::Pending, views::Files};
+use super::{
+    Failure,
+    args::SimulateArgs,
+    output::{self, Pending},
+    views::Files,
+};
 
-/// Refuses a raster that is no GeoTIFF or would lie on no map.
-pub(crate) fn check(file: &Path, case: &Case) -> Result<(), Failure> {
-    if !case.is_on_dem() {
-        return Err(Failure::message("--density: the landings lie on no DEM; give the scenario [terrain] dem"));
+/// Refuses a raster that is no GeoTIFF, and a raster or a picture that would lie on no map.
+pub(crate) fn check(args: &SimulateArgs, case: &Case) -> Result<(), Failure> {
+    let wanted = [("--density", &args.density), ("--plot-density", &args.plot_density)];
+    if let Some((option, _)) = wanted.iter().find(|(_, file)| file.is_some() && !case.is_on_dem()) {
+        return Err(Failure::message(format!("{option}: the landings lie on no DEM; give the scenario [terrain] dem")));
     }
+    let Some(file) = &args.density else { return Ok(()) };
     let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     if !matches!(ending.as_deref(), Some("tif" | "tiff")) {
         let found = file.display();
@@ -26,29 +33,34 @@ pub(crate) fn check(file: &Path, case: &Case) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The file of the raster, and what is counted for it.
+/// The files of the raster and the picture, and what is counted for them.
 #[derive(Default)]
-pub(crate) struct DensityFile<'a> {
-    file: Option<Pending<'a>>,
+pub(crate) struct DensityFiles<'a> {
+    raster: Option<Pending<'a>>,
+    picture: Option<Pending<'a>>,
     counted: Option<RestDensity>,
 }
 
-impl<'a> DensityFile<'a> {
-    /// Opens it before the computation begins.
-    pub(crate) fn begin(path: Option<&'a Path>) -> Result<Self, Failure> {
-        Ok(Self { file: path.map(Pending::begin).transpose()?, counted: None })
+impl<'a> DensityFiles<'a> {
+    /// Opens them before the computation begins.
+    pub(crate) fn begin(args: &'a SimulateArgs) -> Result<Self, Failure> {
+        let raster = args.density.as_deref().map(Pending::begin).transpose()?;
+        Ok(Self { raster, picture: output::begin_picture("--plot-density", args.plot_density.as_deref())?, counted: None })
     }
 
     /// What counts where trials rest, and the share of them inside an area.
     pub(crate) fn of(&mut self, trials: &Trials, within: Option<&Path>) -> Result<Option<&mut RestDensity>, Failure> {
-        self.counted = self.file.as_ref().map(|_| trials.density(within)).transpose()?.flatten();
+        let is_wanted = self.raster.is_some() || self.picture.is_some();
+        self.counted = is_wanted.then(|| trials.density(within)).transpose()?.flatten();
         Ok(self.counted.as_mut())
     }
 
-    /// Adds the raster to the files of an answer, and its numbers to the answer. Without a path nothing was flown.
+    /// Adds both to the files of an answer, and their numbers to the answer. Without a path nothing was flown.
     pub(crate) fn add(self, files: &mut Files<'a>, simulated: &mut Simulated) -> Result<(), Failure> {
-        let counted = self.counted.filter(|density| density.trials() > 0);
-        let (Some(file), Some(density)) = (self.file, counted) else { return Ok(()) };
+        let Some(density) = self.counted.filter(|density| density.trials() > 0) else { return Ok(()) };
+        simulated.answer.density = Some(DensityRecord::new(&density));
+        files.picture(self.picture, || simulated.density_map(&density))?;
+        let Some(raster) = self.raster else { return Ok(()) };
         #[expect(clippy::cast_possible_truncation, reason = "shares of a raster in single precision")]
         let single = |shares: Vec<f64>| shares.into_iter().map(|share| share as f32).collect::<Vec<f32>>();
         let of_hops =
@@ -58,8 +70,7 @@ impl<'a> DensityFile<'a> {
         let (dem, bands) = (density.dem(), ResultBands::Float32(bands));
         let bytes =
             result_geotiff_bytes(dem.rows(), dem.cols(), dem.georeference(), &bands).map_err(|error| Failure::of(&error))?;
-        files.bytes(file, bytes);
-        simulated.answer.density = Some(DensityRecord::new(&density));
+        files.bytes(raster, bytes);
         Ok(())
     }
 }

@@ -89,6 +89,7 @@ impl MapInput {
             mobility: args.mobility.is_some(),
             ranks_sites: false,
             predecessors: args.predecessor_output.is_some(),
+            refusals: args.plot.is_some(),
             trials: args.simulate,
             hops_max: args.hops_max,
             amounts: args.amount_output.iter().map(|output| output.amount).collect(),

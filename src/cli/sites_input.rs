@@ -71,6 +71,7 @@ impl SitesInput {
             mobility: false,
             ranks_sites: true,
             predecessors: false,
+            refusals: false,
             trials: false,
             hops_max: None,
             amounts: Vec::new(),

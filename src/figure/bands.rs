@@ -12,25 +12,19 @@ const BANDS: [RGBColor; 6] = [
     RGBColor(68, 1, 84),
 ];
 
-/// The greatest number of classes of equal width: more shades cannot be distinguished under a hillshade.
-const MOST_EVEN: u64 = 8;
+/// The greatest number of classes: more shades cannot be distinguished under a hillshade.
+pub(super) const MOST_CLASSES: u64 = 7;
 
 /// Classes of hop counts: the greatest count of each, in ascending order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct HopClasses(pub(super) Vec<u64>);
 
 impl HopClasses {
-    /// For hop counts up to `most`: one class for each count up to six, else classes whose ends grow by a common factor.
+    /// For hop counts up to `most`: at most seven classes of equal width, which is a round number of hops; the last ends with `most`.
     pub(super) fn up_to(most: u64) -> Self {
-        Self(classes(most))
-    }
-
-    /// For hop counts up to `most` over an area, most of which has high counts: one class for each count up to eight, else eight
-    /// classes as equal in width as whole numbers allow.
-    pub(super) fn even(most: u64) -> Self {
-        let count = most.min(MOST_EVEN);
-        // most * i / count, rounded up, without overflow of 64 bits.
-        Self((1..=count).map(|i| most / count * i + (most % count * i).div_ceil(count)).collect())
+        let width = round_width(most.div_ceil(MOST_CLASSES).max(1));
+        let count = most.div_ceil(width);
+        Self((1..=count).map(|i| width.saturating_mul(i).min(most)).collect())
     }
 
     /// The class of a hop count.
@@ -42,7 +36,7 @@ impl HopClasses {
     pub(super) fn colour(&self, class: usize) -> RGBColor {
         let steps = self.0.len().max(2) - 1;
         if steps >= BANDS.len() {
-            #[expect(clippy::cast_precision_loss, reason = "at most eight classes")]
+            #[expect(clippy::cast_precision_loss, reason = "at most seven classes")]
             return ramp(class as f64 / steps as f64);
         }
         BANDS[(class * (BANDS.len() - 1) / steps).min(BANDS.len() - 1)]
@@ -60,30 +54,14 @@ impl HopClasses {
     }
 }
 
-/// The greatest hop count of each class.
-fn classes(most: u64) -> Vec<u64> {
-    let count = BANDS.len() as u64;
-    if most <= count {
-        return (1..=most).collect();
+/// The least of 1, 2, 3, 4, 5 and of 10, 15, 20, 25, 30, 40, 50 times a power of ten that is at least the given number.
+fn round_width(least: u64) -> u64 {
+    const TENS: [u64; 7] = [10, 15, 20, 25, 30, 40, 50];
+    if least <= 5 {
+        return least;
     }
-    #[expect(clippy::cast_precision_loss, reason = "a count of hops for a legend")]
-    let whole = most as f64;
-    let mut ends: Vec<u64> = Vec::new();
-    for i in 1..=count {
-        #[expect(
-            clippy::cast_precision_loss,
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "between 1 and most"
-        )]
-        let end = libm::pow(whole, i as f64 / count as f64).round() as u64;
-        let after_last = ends.last().map_or(1, |last| last + 1);
-        ends.push(end.max(after_last));
-    }
-    if let Some(last) = ends.last_mut() {
-        *last = most;
-    }
-    ends
+    let powers = std::iter::successors(Some(1u64), |power| power.checked_mul(10));
+    powers.flat_map(|power| TENS.map(|ten| ten.saturating_mul(power))).find(|width| *width >= least).unwrap_or(u64::MAX)
 }
 
 /// The colour for a value from 0 (first band) to 1 (last band).
@@ -110,18 +88,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn classes_rise_and_end_with_the_most() {
-        assert!(classes(0).is_empty());
-        assert_eq!(classes(4), [1, 2, 3, 4]);
-        for most in 7..2000 {
-            let ends = classes(most);
-            assert!(ends.windows(2).all(|pair| pair[0] < pair[1]), "{ends:?}");
-            assert_eq!((ends.len(), ends.last()), (6, Some(&most)));
-        }
-        assert_eq!(classes(u64::MAX).last(), Some(&u64::MAX));
-    }
-
-    #[test]
     fn every_hop_count_has_its_class_and_text() {
         let classes = HopClasses::up_to(100);
         for hops in 1..=100 {
@@ -129,25 +95,34 @@ mod tests {
             assert!(hops <= classes.0[class] && (class == 0 || hops > classes.0[class - 1]));
         }
         assert_eq!(HopClasses::up_to(3).texts(), ["1 hop", "2 hops", "3 hops"]);
-        assert_eq!(classes.texts().last().unwrap(), "47 to 100 hops");
+        assert_eq!(
+            classes.texts(),
+            ["1 to 15 hops", "16 to 30 hops", "31 to 45 hops", "46 to 60 hops", "61 to 75 hops", "76 to 90 hops", "91 to 100 hops"]
+        );
     }
 
     #[test]
-    fn even_classes_differ_by_at_most_one_hop_and_have_their_own_colours() {
-        assert_eq!(HopClasses::even(7).0, [1, 2, 3, 4, 5, 6, 7]);
-        assert_eq!(HopClasses::even(30).0, [4, 8, 12, 15, 19, 23, 27, 30]);
-        assert!(HopClasses::even(0).0.is_empty());
-        for most in (9..500).chain([u64::MAX]) {
-            let classes = HopClasses::even(most);
-            assert_eq!((classes.0.len(), classes.0.last()), (8, Some(&most)));
-            let widths: Vec<u64> = std::iter::once(&0).chain(&classes.0).zip(&classes.0).map(|(low, high)| high - low).collect();
-            assert!(widths.iter().all(|width| (most / 8..=most.div_ceil(8)).contains(width)), "{widths:?}");
+    fn at_most_seven_classes_of_one_round_width_end_with_the_most_in_their_own_colours() {
+        assert_eq!(HopClasses::up_to(7).0, [1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(HopClasses::up_to(8).0, [2, 4, 6, 8]);
+        assert_eq!(HopClasses::up_to(30).0, [5, 10, 15, 20, 25, 30]);
+        assert_eq!(HopClasses::up_to(215).0, [40, 80, 120, 160, 200, 215]);
+        assert!(HopClasses::up_to(0).0.is_empty());
+        for most in (1..3000).chain([u64::MAX, u64::MAX - 1, 123_456_789]) {
+            let HopClasses(ends) = HopClasses::up_to(most);
+            assert!(ends.len() <= 7 && ends.last() == Some(&most), "{ends:?}");
+            let widths: Vec<u64> = std::iter::once(&0).chain(&ends).zip(&ends).map(|(low, high)| high - low).collect();
+            let last = widths.len() - 1;
+            assert!(widths[..last].iter().all(|width| *width == widths[0]) && (1..=widths[0]).contains(&widths[last]), "{ends:?}");
+            // One or two digits beside zeros: a round number.
+            let digits = widths[0].to_string();
+            assert!(last == 0 || digits.trim_end_matches('0').len() <= 2, "{ends:?}");
         }
-        let classes = HopClasses::even(8);
-        let mut colours: Vec<_> = (0..8).map(|class| classes.colour(class)).collect();
-        assert_eq!((colours[0], colours[7]), (BANDS[0], BANDS[5]));
+        let classes = HopClasses::up_to(7);
+        let mut colours: Vec<_> = (0..7).map(|class| classes.colour(class)).collect();
+        assert_eq!((colours[0], colours[6]), (BANDS[0], BANDS[5]));
         colours.dedup();
-        assert_eq!(colours.len(), 8);
+        assert_eq!(colours.len(), 7);
     }
 
     #[test]

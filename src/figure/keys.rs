@@ -16,6 +16,9 @@ const ROW_MM: f64 = 4.6;
 /// Half the height of a filled sample.
 const HALF_MM: f64 = 1.5;
 
+/// Thin lines over a filled sample.
+const THIN_PEN: Pen = Pen { colour: BLACK, width_mm: 0.15 };
+
 /// A sample of a legend.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Swatch {
@@ -27,6 +30,16 @@ pub(super) enum Swatch {
     Crossed(RGBColor),
     /// A colour under dots.
     Dotted(RGBColor),
+    /// A colour under thin stripes that fall to the right.
+    Falling(RGBColor),
+    /// A colour under level lines.
+    Level(RGBColor),
+    /// A colour under upright lines.
+    Upright(RGBColor),
+    /// A colour under level and upright lines.
+    Grid(RGBColor),
+    /// A colour under level lines with gaps.
+    DashedOver(RGBColor),
     /// A line.
     Line(Pen),
     /// A dashed line, with its dashes and gaps.
@@ -58,7 +71,15 @@ pub(super) fn rectangle((left, top): Place, (right, bottom): Place) -> Vec<Place
 fn sample(sheet: &mut Sheet, swatch: Swatch, (x, y): Place) {
     let (end, top, bottom) = (x + SAMPLE_MM, y - HALF_MM, y + HALF_MM);
     match swatch {
-        Swatch::Fill(colour) | Swatch::Striped(colour) | Swatch::Crossed(colour) | Swatch::Dotted(colour) => {
+        Swatch::Fill(colour)
+        | Swatch::Striped(colour)
+        | Swatch::Crossed(colour)
+        | Swatch::Dotted(colour)
+        | Swatch::Falling(colour)
+        | Swatch::Level(colour)
+        | Swatch::Upright(colour)
+        | Swatch::Grid(colour)
+        | Swatch::DashedOver(colour) => {
             sheet.area(rectangle((x, top), (end, bottom)), colour, 1.0);
         }
         Swatch::Line(pen) => sheet.line(vec![(x, y), (end, y)], pen),
@@ -69,9 +90,10 @@ fn sample(sheet: &mut Sheet, swatch: Swatch, (x, y): Place) {
     if matches!(swatch, Swatch::Striped(_) | Swatch::Crossed(_)) {
         stripes(sheet, (x, top), (end, bottom), 1.2, pen);
     }
-    if matches!(swatch, Swatch::Crossed(_)) {
+    if matches!(swatch, Swatch::Crossed(_) | Swatch::Falling(_)) {
         // Mirrored vertically, the same stripes fall to the right.
         let from = sheet.marks.len();
+        let pen = if matches!(swatch, Swatch::Falling(_)) { THIN_PEN } else { pen };
         stripes(sheet, (x, top), (end, bottom), 1.2, pen);
         for mark in &mut sheet.marks[from..] {
             if let Mark::Line { points, .. } = mark {
@@ -81,9 +103,34 @@ fn sample(sheet: &mut Sheet, swatch: Swatch, (x, y): Place) {
             }
         }
     }
+    lines(sheet, swatch, (x, top), (end, bottom));
     if matches!(swatch, Swatch::Dotted(_)) {
         for i in 0..4 {
             sheet.dot((x + 0.9 + 1.4 * f64::from(i), y + if i % 2 == 0 { -0.6 } else { 0.6 }), 0.28, BLACK);
+        }
+    }
+}
+
+/// The lines of a sample that are level, upright or both.
+fn lines(sheet: &mut Sheet, swatch: Swatch, (left, top): Place, (right, bottom): Place) {
+    const STEP_MM: f64 = 1.0;
+    let places = |from: f64, to: f64| {
+        std::iter::successors(Some(from + 0.5 * STEP_MM), |at| Some(at + STEP_MM)).take_while(move |at| *at < to)
+    };
+    if matches!(swatch, Swatch::Level(_) | Swatch::Grid(_)) {
+        for y in places(top, bottom) {
+            sheet.line(vec![(left, y), (right, y)], THIN_PEN);
+        }
+    }
+    if matches!(swatch, Swatch::Upright(_) | Swatch::Grid(_)) {
+        for x in places(left, right) {
+            sheet.line(vec![(x, top), (x, bottom)], THIN_PEN);
+        }
+    }
+    if matches!(swatch, Swatch::DashedOver(_)) {
+        for (row, y) in places(top, bottom).enumerate() {
+            let from = if row % 2 == 0 { left } else { left + STEP_MM };
+            sheet.dashed(&[(from, y), (right, y)], STEP_MM, STEP_MM, THIN_PEN);
         }
     }
 }

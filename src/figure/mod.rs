@@ -71,10 +71,10 @@ pub use chains::{
 pub use data::{Cone, FigureData, HopFigure, MOST_HOPS_DRAWN, StoppedFigure, Subject, Thinned};
 pub use heading::conditions;
 pub use map::{
-    GoalMark, HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure,
-    LegsMapFigure, LegsMapLayer, MapPosts, PlanView, RasterStyle, RefusedPosts, SiteMark, SitesFigure, TargetMark, TargetsFigure,
-    TravelFigure, TravelLine, TravelMapFigure, ValueMapFigure, VisitRow, draw_hop_map, draw_landing_map, draw_legs_map, draw_sites,
-    draw_targets, draw_travel, draw_travel_map, draw_value_map,
+    DensityFigure, GoalMark, HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse,
+    LandingMapFigure, LegsMapFigure, LegsMapLayer, MapPosts, PlanView, RasterStyle, RefusedBy, RefusedPosts, SiteMark, SitesFigure,
+    TargetMark, TargetsFigure, TravelFigure, TravelLine, TravelMapFigure, ValueMapFigure, VisitRow, draw_density, draw_hop_map,
+    draw_landing_map, draw_legs_map, draw_sites, draw_targets, draw_travel, draw_travel_map, draw_value_map,
 };
 pub use mesh_hop::{MeshHopFigure, draw_mesh_hop};
 pub use mesh_reach::{MeshReachFigure, ReachedContact, draw_mesh_reach};

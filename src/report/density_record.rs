@@ -39,14 +39,20 @@ impl DensityRecord {
         }
     }
 
-    /// The same as lines.
-    pub(super) fn text(&self) -> String {
+    /// The same as sentences.
+    pub fn lines(&self) -> Vec<String> {
         let densest = self
             .greatest_m
-            .map_or(String::new(), |[x, y]| format!(", at most {:.4} in one cell, at ({x}, {y}) m", self.greatest_share));
-        let inside = self.inside_share.zip(self.inside_share_ci95).map_or(String::new(), |(share, [low, high])| {
-            format!("inside the area: {share:.4} (95 % interval {low:.4} to {high:.4})\n")
-        });
-        format!("\nrests: {:.4} of the trials end on the ground{densest}\n{inside}", self.on_ground_share)
+            .map_or(String::new(), |[x, y]| format!(", at most {:.4} in one cell, at ({x:.3}, {y:.3}) m", self.greatest_share));
+        let inside = self
+            .inside_share
+            .zip(self.inside_share_ci95)
+            .map(|(share, [low, high])| format!("inside the area: {share:.4} (95 % interval {low:.4} to {high:.4})"));
+        [format!("rests: {:.4} of the trials end on the ground{densest}", self.on_ground_share)].into_iter().chain(inside).collect()
+    }
+
+    /// The same as text.
+    pub(super) fn text(&self) -> String {
+        format!("\n{}\n", self.lines().join("\n"))
     }
 }

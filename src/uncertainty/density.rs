@@ -97,6 +97,11 @@ impl RestDensity {
         self.area.as_ref().map(|(_, count)| *count)
     }
 
+    /// The outlines of the area, for drawing; empty without one.
+    pub fn area_outlines(&self) -> Vec<Vec<MapPoint>> {
+        self.area.as_ref().map(|(area, _)| area.outlines()).unwrap_or_default()
+    }
+
     /// The cell where most trials end; the first of equals. `None` before any trial.
     pub fn densest(&self) -> Option<DensestCell> {
         let (index, count) = self.ends.iter().rev().max_by_key(|(_, count)| **count)?;

@@ -98,6 +98,7 @@ fn a_map_holds_at_most_the_bytes_that_it_states() {
             mobility,
             ranks_sites: false,
             predecessors,
+            refusals: false,
             trials: footprint.contains("trials"),
             hops_max: None,
             amounts: Vec::new(),

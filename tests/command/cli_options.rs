@@ -1141,7 +1141,7 @@ const COMPARE: [Trial; 10] = [
 ];
 
 /// Ground with all overlays, small enough for a test.
-const SIMULATE: [Trial; 32] = [
+const SIMULATE: [Trial; 33] = [
     (
         "--width-mm",
         &["simulate", "errors.toml", "--plot", "trials.svg"],
@@ -1186,6 +1186,11 @@ const SIMULATE: [Trial; 32] = [
         "--density",
         &["simulate", "map.toml", "--trials", "20"],
         &["simulate", "map.toml", "--trials", "20", "--density", "rests.tif"],
+    ),
+    (
+        "--plot-density",
+        &["simulate", "map.toml", "--trials", "20"],
+        &["simulate", "map.toml", "--trials", "20", "--plot-density", "rests.svg"],
     ),
     (
         "--within",
@@ -1665,6 +1670,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 "--plot-postures",
                 "--plot-map",
                 "--density",
+                "--plot-density",
                 "--pairs",
                 "--starts",
                 "--amount-output",

@@ -7,7 +7,7 @@ use std::fs;
 use crate::desk::{ACROSS, Desk, FOUR_LEGS};
 
 /// Every option of every command that names a picture, with a command line that ends in it.
-const PICTURES: [&[&str]; 16] = [
+const PICTURES: [&[&str]; 17] = [
     &["hop", "plate.obj", "--from", "1,1,0", "--to", "3,3,0", "--scenario", "map.toml", "--plot"],
     &["plan", "scenario.toml", "--plot"],
     &["plan", "scenario.toml", "--set", "hopper.takeoff_speed_max_m_s=1", "--plot"],
@@ -19,6 +19,7 @@ const PICTURES: [&[&str]; 16] = [
     &["plan", "legs_map.toml", "--plot-postures"],
     &["simulate", "map.toml", "--trials", "20", "--plot"],
     &["simulate", "map.toml", "--trials", "20", "--plot-map"],
+    &["simulate", "map.toml", "--trials", "20", "--plot-density"],
     &["trade", "scenario.toml", "--vary", "hopper.takeoff_speed_max_m_s=4:10:3", "--plot"],
     &["compare", "scenario.toml", "map.toml", "--plot"],
     &["sites", "ground.tif", "--every", "9", "--scenario", "map.toml", "--plot"],

@@ -3,10 +3,15 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 #![allow(clippy::cast_precision_loss, reason = "small counts")]
 
-use chta::uncertainty::{Tally, TrialOutcome};
+use std::process::Command;
+
+use chta::{
+    terrain::{DemOptions, read_dem},
+    uncertainty::{Tally, TrialOutcome},
+};
 use serde_json::{Value, json};
 
-use crate::desk::Desk;
+use crate::{desk::Desk, installed::has_gdal};
 
 const ERRORS: &str = "\n[uncertainty]\ntakeoff_speed_sigma_fraction = 0.01\ntakeoff_angle_sigma_deg = 0.3\nposition_sigma_m = 0.05\n\
     drift_along_sigma_m = 0.1\nfriction_sigma = 0.02\ngoal_tolerance_m = 2.0\ntrials = 900\nseed = 4\n";
@@ -24,7 +29,7 @@ fn the_density_of_rests_is_that_of_the_landings() {
     desk.write("area.geojson", r#"{ "type": "Polygon", "coordinates": [[[15, 0], [20, 0], [20, 20], [15, 20], [15, 0]]] }"#);
     let map =
         ["simulate", "dem.toml", "--trials", "400", "--policy", "open-loop", "--density", "rests.tif", "--within", "area.geojson"];
-    let answer = desk.json(&[&map[..], &["-o", "landings.csv"]].concat());
+    let answer = desk.json(&[&map[..], &["-o", "landings.csv", "--plot-density", "rests.svg"]].concat());
     let rows = rows(&desk.read("landings.csv"));
     let number = |row: &std::collections::HashMap<String, String>, key: &str| row[key].parse::<f64>().unwrap();
     // The last landing of a trial is where it ends, unless it left the known ground in a later flight: that one has no row.
@@ -52,6 +57,51 @@ fn the_density_of_rests_is_that_of_the_landings() {
     let bytes = std::fs::read(desk.path().join("rests.tif")).unwrap();
     let names = String::from_utf8_lossy(&bytes).into_owned();
     assert!(names.contains("share of ends") && names.contains(&format!("share after hop {hops}")));
+    // Every cell of every band, counted from the landings. Rests within rounding of the border of two cells may belong to either.
+    let of_hop = |hop: usize| -> Vec<[f64; 2]> {
+        let place = |row: &std::collections::HashMap<String, String>| [number(row, "rest_map_x_m"), number(row, "rest_map_y_m")];
+        rows.iter().filter(|row| row["hop"] == hop.to_string()).map(place).collect()
+    };
+    let ground = read_dem(&desk.path().join("ground.tif")).unwrap();
+    let posts: Vec<_> =
+        (0..ground.rows() * ground.cols()).map(|at| ground.georeference().post(at / ground.cols(), at % ground.cols())).collect();
+    let shares_of =
+        |rests: &[[f64; 2]]| -> Vec<f64> { posts.iter().map(|post| count(rests, [post.x, post.y]) as f64 / trials).collect() };
+    let of_ends = shares_of(&ends);
+    for band in (0..=hops).filter(|_| has_gdal()) {
+        let rests = if band == 0 { ends.clone() } else { of_hop(band) };
+        let (number, file) = ((band + 1).to_string(), desk.path().join("band.tif"));
+        let status =
+            Command::new("gdal_translate").args(["-q", "-b", &number, "rests.tif", "band.tif"]).current_dir(desk.path()).status();
+        assert!(status.unwrap().success());
+        let raster = DemOptions::default().of_any_unit().read(&file).unwrap();
+        let found: Vec<f64> = raster.elevations().map(|share| share.unwrap()).collect();
+        let expected = shares_of(&rests);
+        for (at, post) in posts.iter().enumerate() {
+            assert!((found[at] - expected[at]).abs() < 1e-7, "band {band}, {post:?}: {}, expected {}", found[at], expected[at]);
+        }
+        assert!((found.iter().sum::<f64>() - rests.len() as f64 / trials).abs() < 1e-5, "band {band} does not add up");
+    }
+    // The picture's legend counts the cells of each of its bands.
+    let picture = desk.read("rests.svg");
+    let mut counted = 0;
+    let (mut from, mut bands) = (0.0, 0);
+    for line in picture.lines().filter(|line| line.contains(" cell") && line.contains("%: ")) {
+        let text = line.replace("</text>", "");
+        let text = text.rsplit('>').next().unwrap().trim();
+        let (range, cells) = text.split_once(" %: ").unwrap();
+        let to = range.rsplit(' ').next().unwrap().parse::<f64>().unwrap() / 100.0;
+        let held = of_ends.iter().filter(|share| **share > from + 1e-9 && **share <= to + 1e-9).count();
+        assert_eq!(cells.split(' ').next().unwrap(), held.to_string(), "{text}");
+        (from, bands, counted) = (to, bands + 1, counted + held);
+    }
+    assert!(
+        (3..=7).contains(&bands) && counted == of_ends.iter().filter(|share| **share > 0.0).count(),
+        "{bands} bands, {counted}"
+    );
+    assert!(picture.contains("the area") && picture.contains(&format!("inside the area: {:.4}", share("inside_share"))));
+    let picture = desk.run(&["simulate", "chain.toml", "--plot-density", "rests.svg"]);
+    assert!(picture.status == 2 && picture.stderr.contains("--plot-density: the landings lie on no DEM"), "{}", picture.stderr);
     let refused = desk.run(&["simulate", "chain.toml", "--density", "rests.tif"]);
     assert!(refused.status == 2 && refused.stderr.contains("lie on no DEM"), "{}", refused.stderr);
     let text = desk.run(&[&map[..], &["--density", "rests.txt"]].concat());

@@ -242,6 +242,7 @@ impl RoadmapArgs {
 
 /// Fly the planned path many times under the errors of [uncertainty]: success rate, scatter of the landings, outcomes
 #[derive(Debug, ClapArgs)]
+#[command(group = clap::ArgGroup::new("rests").args(["density", "plot_density"]).multiple(true))]
 #[command(after_help = "Example:\n  chta simulate data/scenarios/rolling_surely.toml --trials 500 --compare")]
 pub(crate) struct SimulateArgs {
     #[command(flatten)]
@@ -297,8 +298,12 @@ pub(crate) struct SimulateArgs {
     /// after each planned hop
     #[arg(long, value_name = "FILE", conflicts_with_all = ["experiment", "compare"])]
     pub(crate) density: Option<PathBuf>,
-    /// Area (GeoJSON polygons or mask on the map) whose share of the trials' ends is stated, beside --density [default: none]
-    #[arg(long, value_name = "FILE", requires = "density")]
+    /// Picture (SVG or PNG) of the share of trials that end in the cell of each post of a DEM, in bands, with the area of --within
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["experiment", "compare"])]
+    pub(crate) plot_density: Option<PathBuf>,
+    /// Area (GeoJSON polygons or mask on the map) whose share of the trials' ends is stated, beside --density or --plot-density [default:
+    /// none]
+    #[arg(long, value_name = "FILE", requires = "rests")]
     pub(crate) within: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) trajectory: TrajectoryArgs,
@@ -494,9 +499,7 @@ impl SimulateArgs {
         if self.plot_map.is_some() && !case.is_on_dem() {
             return Err(Failure::message("--plot-map: the landings lie on no DEM; give the scenario [terrain] dem, or use --plot"));
         }
-        if let Some(file) = &self.density {
-            density::check(file, case)?;
-        }
+        density::check(self, case)?;
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use chta::{
-    figure::{Caption, GoalMark, HopMapFigure, MapPosts, RefusedPosts, ValueMapFigure, draw_hop_map, draw_value_map},
+    figure::{Caption, GoalMark, HopMapFigure, MapPosts, RefusedBy, RefusedPosts, ValueMapFigure, draw_hop_map, draw_value_map},
     path::HopPath,
     planner::Amount,
     quantity::MapPoint,
@@ -11,7 +11,7 @@ use chta::{
     scenario::Scenario,
     study::{
         conditions,
-        map::{MapStudy, PreparedMap},
+        map::{MapStudy, NodeRefusal, PreparedMap, RefusedNodes},
     },
 };
 
@@ -42,6 +42,7 @@ pub(super) fn map(input: &MapInput, prepared: &PreparedMap, study: &MapStudy, fi
             caption: Caption { title: format!("By the least {}: {}", amount.words(), input.title()), lines },
             posts,
             values: totals,
+            refused: refused(study),
             value_name: format!("least {} ({})", amount.words(), amount.unit()),
             none_name: within.map_or("not reached".to_owned(), |budget| format!("not within {} {}", budget.max, amount.unit())),
             starts,
@@ -51,11 +52,15 @@ pub(super) fn map(input: &MapInput, prepared: &PreparedMap, study: &MapStudy, fi
         return output::encoded(draw_value_map(&figure), file);
     }
     if let Some(mobility) = study.mobility.as_ref().filter(|_| starts.is_empty()) {
-        let values: Vec<f64> = mobility.share.iter().map(|share| 100.0 * f64::from(*share)).collect();
+        // Where every contact is refused no hop begins: its share of 0 is drawn as the reason.
+        let is_refused = |node: usize| study.refused.iter().any(|refused| refused.nodes[node]);
+        let percent = |(node, share): (usize, &f32)| if is_refused(node) { f64::NAN } else { 100.0 * f64::from(*share) };
+        let values: Vec<f64> = mobility.share.iter().enumerate().map(percent).collect();
         let figure = ValueMapFigure {
             caption: Caption { title: format!("Single hops: {}", input.title()), lines: vec![conditions(&input.bare.scenario)] },
             posts,
             values: &values,
+            refused: refused(study),
             value_name: format!(
                 "mobility: share of the {}s within {:.1} m that one hop reaches (%)",
                 answer.node(),
@@ -74,7 +79,7 @@ pub(super) fn map(input: &MapInput, prepared: &PreparedMap, study: &MapStudy, fi
         posts,
         hops: &out.hops,
         can_return: can_return.as_deref(),
-        refused: refused(prepared),
+        refused: refused(study),
         starts,
         goals: marks,
         paths: ways,
@@ -88,22 +93,19 @@ fn places(start: MapPoint, path: &HopPath) -> Vec<MapPoint> {
     std::iter::once(start).chain(landings).collect()
 }
 
-/// Which posts of the map refuse every contact: in a keep-out zone or outside the keep-in zones, and by each layer on contacts.
-fn refused(prepared: &PreparedMap) -> Vec<RefusedPosts> {
-    let (nodes, overlays) = (prepared.nodes(), prepared.ground.terrain().overlays());
-    let where_refused = |refuses: &dyn Fn(MapPoint) -> bool| {
-        let posts = (0..prepared.lattice.count()).map(|index| prepared.lattice.node(index));
-        posts.map(|post| refuses(nodes.post(post.row, post.col))).collect()
+/// The nodes that refuse every contact, as the picture takes them.
+fn refused(study: &MapStudy) -> Vec<RefusedPosts> {
+    let of = |RefusedNodes { by, nodes }: &RefusedNodes| RefusedPosts {
+        by: match by {
+            NodeRefusal::Zone => RefusedBy::Zone,
+            NodeRefusal::TooSteep => RefusedBy::Slope,
+            NodeRefusal::Footprint => RefusedBy::Footprint,
+            NodeRefusal::Layer(_) => RefusedBy::Layer,
+        },
+        reason: by.words(),
+        posts: nodes.clone(),
     };
-    let zones = overlays
-        .zones()
-        .next()
-        .map(|_| RefusedPosts { reason: "keep-out".to_owned(), posts: where_refused(&|at| overlays.keeps_out(at)) });
-    let layers = overlays.layers().iter().filter(|layer| layer.rule().on_contact).map(|layer| RefusedPosts {
-        reason: format!("layer {} does not hold", layer.rule().name),
-        posts: where_refused(&|at| !layer.holds_at(at)),
-    });
-    zones.into_iter().chain(layers).collect()
+    study.refused.iter().map(of).collect()
 }
 
 /// The subtitle of the picture: the map's assumptions and a summary of its result.

@@ -1,6 +1,6 @@
 //! The data of the maps.
 
-use super::super::Caption;
+use super::{super::Caption, unreached::RefusedBy};
 use crate::{quantity::MapPoint, terrain::Dem};
 
 /// The value of an unreachable post, in [`HopMapFigure::hops`] and in the GeoTIFF.
@@ -74,6 +74,8 @@ pub struct GoalMark {
 /// The posts of a map that refuse every contact for one reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RefusedPosts {
+    /// The kind of the reason, which has a pattern of its own.
+    pub by: RefusedBy,
     /// The reason in the legend, such as "keep-out".
     pub reason: String,
     /// Whether it is that of each post, row-major from the north-west.
@@ -92,7 +94,8 @@ pub struct HopMapFigure<'a> {
     pub hops: &'a [i16],
     /// Whether a start can be reached again from each post, in the same order; `None` if not requested.
     pub can_return: Option<&'a [bool]>,
-    /// Posts that refuse every contact, by reason: of several reasons for one post the first counts.
+    /// Posts that refuse every contact, by reason: of several reasons for one post the first counts. Without any, nothing is said of why
+    /// posts are not reached.
     pub refused: Vec<RefusedPosts>,
     /// The starts.
     pub starts: Vec<MapPoint>,
@@ -111,6 +114,8 @@ pub struct ValueMapFigure<'a> {
     pub posts: MapPosts<'a>,
     /// The values, row-major from the north-west; NaN for absent values.
     pub values: &'a [f64],
+    /// Posts that refuse every contact, by reason: those without a value are drawn with it.
+    pub refused: Vec<RefusedPosts>,
     /// The name of the values with their unit, such as `least total effort (m/s)`.
     pub value_name: String,
     /// The meaning of NaN at a post with an elevation, such as `unreachable`.

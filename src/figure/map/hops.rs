@@ -12,18 +12,19 @@ use super::{
         sheet::Sheet,
     },
     check_size,
-    data::{HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, MapPosts, RefusedPosts},
+    data::{HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, MapPosts},
     panel::{MapPanel, end_keys, start_symbol},
     raster::{self, Pattern, Window, tone},
+    unreached::{self, NO_HOP, NOT_REACHED},
 };
 
-/// Posts that are not reached: grey, which is not a colour of any band.
-pub(super) const NOT_REACHED: RGBColor = RGBColor(205, 205, 205);
-/// Posts that refuse every contact, by the number of their reason: the first as those not reached, further ones in pale tints.
-const REFUSED: [RGBColor; 5] =
-    [NOT_REACHED, RGBColor(222, 196, 160), RGBColor(170, 196, 222), RGBColor(214, 176, 204), RGBColor(160, 160, 160)];
 const NO_WAY_BACK: &str = "reached, no path back to the start";
 const NO_WAY_BACK_TO_ANY: &str = "reached, no path back to a start";
+/// Posts beyond the hops that were searched, those reached without a path back, and those with a path to the start alone.
+const NOT_SEARCHED: Pattern = Pattern::Striped;
+const ONE_WAY: Pattern = Pattern::Striped;
+const BACK_ONLY: Pattern = Pattern::Dashed;
+
 /// The legend symbol of no-data: white in a thin frame.
 pub(super) fn no_data_symbol(sheet: &mut Sheet, (x, y): (f64, f64)) {
     let corners = keys::rectangle((x - 3.0, y - 1.5), (x + 3.0, y + 1.5));
@@ -33,11 +34,13 @@ pub(super) fn no_data_symbol(sheet: &mut Sheet, (x, y): (f64, f64)) {
 
 /// Draws a hop map: the fewest hops to every post, over a hillshade with the sun in the north-west.
 ///
-/// Bands of one count each, or of several if there are more than eight; grey: not reached; white: no data. With
-/// [`HopMapFigure::can_return`], stripes: reached, but the start cannot be reached from there; dots: not reached, but the start can
-/// be reached from there. Crossed stripes: posts that refuse every contact, in a tint for each reason
-/// ([`HopMapFigure::refused`]). A DEM of more than 2 000 rows or
-/// columns is drawn with every n-th post, and the map says so.
+/// Bands of one count each, or of a round number of counts if there are more than seven; white: no data. Posts that are not reached are pale
+/// under a pattern, which tells them from the bands in a print in grey too: those that refuse every contact in the tint and the pattern of
+/// their reason ([`HopMapFigure::refused`]). With [`HopMapFigure::can_return`], bold stripes: reached, but the start cannot be reached from
+/// there; dashes: not reached, but the start can be reached from there.
+///
+/// The map is cut to the posts that are reached, the starts, the goals and the paths, if that leaves out much of it; the legend counts all
+/// posts. A window of more than 2 000 rows or columns is drawn with every n-th post. Both are said below it.
 ///
 /// # Errors
 /// [`FigureError::RasterSize`] if a raster does not have one value for every post.
@@ -53,15 +56,18 @@ pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
     let mut tones: Vec<_> = (0..counts.bands.len()).map(|class| tone(counts.classes.colour(class))).collect();
     let not_reached = tones.len();
     tones.push(NOT_REACHED);
-    tones.extend(REFUSED.iter().cycle().take(figure.refused.len()));
+    let looks = unreached::looks(&figure.refused);
+    tones.extend(looks.iter().map(|(tint, _)| *tint));
     let posts = figure.posts;
-    let window = Window::whole(posts.dem);
+    let is_shown = |at: &usize| figure.hops[*at] >= 0 || figure.can_return.is_some_and(|can_return| can_return[*at]);
+    let shown = (0..figure.hops.len()).filter(is_shown);
+    let window = posts.window(shown, figure.starts.iter().copied(), &figure.goals, &figure.paths);
     let pixels = raster::draw(posts.dem, &window, &tones, |row, col| {
         let at = posts.index(row, col);
         let hops = figure.hops[at];
         let refused = || reason_of(figure, at).map_or(not_reached, |reason| not_reached + 1 + reason);
         let class = class_of(&counts.classes, hops).unwrap_or_else(refused);
-        (hops != HOPS_NO_DATA).then(|| (class, pattern_of(figure, at)))
+        (hops != HOPS_NO_DATA).then(|| (class, pattern_of(figure, &looks, at)))
     });
     let mut sheet = Sheet::default();
     let top_mm = figure.caption.draw(&mut sheet);
@@ -73,13 +79,28 @@ pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
     let uncounted_starts = if counts.start == 0 { &figure.starts[..] } else { &[] };
     entries.extend(end_keys(uncounted_starts, &figure.goals, &figure.paths));
     let end_mm = keys::draw(&mut sheet, &entries, end_mm + 3.0);
-    let height_mm = notes(&mut sheet, &posts, &window, end_mm + 0.8) + 2.0;
+    let height_mm = notes_on_counts(&mut sheet, &posts, &window, end_mm + 0.8) + 2.0;
     Ok(Picture::page(sheet, height_mm))
 }
 
 /// Draws the description of the raster; returns where it ends.
 pub(super) fn notes(sheet: &mut Sheet, posts: &MapPosts<'_>, window: &Window, top_mm: f64) -> f64 {
-    paragraph(sheet, &about_raster(posts, window), SMALL_MM, false, top_mm)
+    noted(sheet, posts, window, "", top_mm)
+}
+
+/// The same below a legend that counts posts or states shares of them: those of the DEM, also if less of it is drawn.
+pub(super) fn notes_on_counts(sheet: &mut Sheet, posts: &MapPosts<'_>, window: &Window, top_mm: f64) -> f64 {
+    noted(sheet, posts, window, "; the legend counts all of them", top_mm)
+}
+
+fn noted(sheet: &mut Sheet, posts: &MapPosts<'_>, window: &Window, counted: &str, top_mm: f64) -> f64 {
+    let mut text = about_raster(posts, window);
+    if *window != Window::whole(posts.dem) {
+        let of_posts = |nodes: usize| nodes.div_ceil(posts.per_post.max(1));
+        let (rows, cols) = (of_posts(posts.dem.rows()), of_posts(posts.dem.cols()));
+        text = format!("{text} The DEM has {rows} x {cols} posts{counted}.");
+    }
+    paragraph(sheet, &text, SMALL_MM, false, top_mm)
 }
 
 /// The description of the raster: its posts, which of them have answers, and which are drawn.
@@ -117,18 +138,20 @@ fn class_of(classes: &HopClasses, hops: i16) -> Option<usize> {
 
 /// The number of the reason by which a post that is not reached refuses every contact.
 fn reason_of(figure: &HopMapFigure<'_>, at: usize) -> Option<usize> {
-    let refuses = |refused: &RefusedPosts| refused.posts[at];
-    (figure.hops[at] == HOPS_UNREACHABLE).then(|| figure.refused.iter().position(refuses)).flatten()
+    (figure.hops[at] == HOPS_UNREACHABLE).then(|| unreached::reason_of(&figure.refused, at)).flatten()
 }
 
 /// The pattern over a post's colour.
-fn pattern_of(figure: &HopMapFigure<'_>, at: usize) -> Pattern {
+fn pattern_of(figure: &HopMapFigure<'_>, looks: &[(RGBColor, Pattern)], at: usize) -> Pattern {
     let hops = figure.hops[at];
+    if let Some((_, pattern)) = reason_of(figure, at).and_then(|reason| looks.get(reason)) {
+        return *pattern;
+    }
     match figure.can_return.map(|can_return| can_return[at]) {
-        _ if reason_of(figure, at).is_some() => Pattern::Crossed,
-        _ if hops == HOPS_NOT_SEARCHED => Pattern::Striped,
-        Some(false) if hops >= 0 => Pattern::Striped,
-        Some(true) if hops == HOPS_UNREACHABLE => Pattern::Dotted,
+        _ if hops == HOPS_NOT_SEARCHED => NOT_SEARCHED,
+        Some(false) if hops >= 0 => ONE_WAY,
+        Some(true) if hops == HOPS_UNREACHABLE => BACK_ONLY,
+        _ if hops == HOPS_UNREACHABLE => NO_HOP,
         _ => Pattern::Plain,
     }
 }
@@ -155,7 +178,7 @@ impl Counts {
     fn of(figure: &HopMapFigure<'_>) -> Self {
         let most = figure.hops.iter().filter_map(|&hops| u64::try_from(hops).ok()).max();
         // A start without any reachable post still has a band.
-        let classes = HopClasses::even(most.map_or(0, |most| most.max(1)));
+        let classes = HopClasses::up_to(most.map_or(0, |most| most.max(1)));
         let bands = vec![0; classes.0.len()];
         let asks_return = figure.can_return.is_some();
         let mut counts = Self {
@@ -173,7 +196,7 @@ impl Counts {
             node: figure.posts.node(),
         };
         for (at, &hops) in figure.hops.iter().enumerate() {
-            let pattern = pattern_of(figure, at);
+            let can_return = figure.can_return.map(|can_return| can_return[at]);
             if let Some(reason) = reason_of(figure, at) {
                 counts.refused[reason] += 1;
                 continue;
@@ -185,11 +208,8 @@ impl Counts {
                 None if hops == HOPS_NOT_SEARCHED => counts.not_searched += 1,
                 None => counts.not_reached += 1,
             }
-            match pattern {
-                Pattern::Striped => counts.one_way += u64::from(hops >= 0),
-                Pattern::Dotted => counts.back_only += 1,
-                Pattern::Plain | Pattern::Crossed => {}
-            }
+            counts.one_way += u64::from(can_return == Some(false) && hops >= 0);
+            counts.back_only += u64::from(can_return == Some(true) && hops == HOPS_UNREACHABLE);
         }
         counts
     }
@@ -204,16 +224,15 @@ impl Counts {
         let bands =
             texts.iter().zip(&self.bands).zip(tones).map(|((text, count), &tone)| (Swatch::Fill(tone), text.as_str(), *count));
         let rest = [
-            (Swatch::Fill(NOT_REACHED), "not reached", self.not_reached),
-            (Swatch::Striped(NOT_REACHED), "farther or not reachable, not searched", self.not_searched),
+            (NO_HOP.swatch(NOT_REACHED), unreached::rest_name(&figure.refused), self.not_reached),
+            (NOT_SEARCHED.swatch(NOT_REACHED), "farther or not reachable, not searched", self.not_searched),
             (Swatch::Symbol(no_data_symbol), "no data", self.no_data),
-            (Swatch::Striped(tones[0]), no_way_back, self.one_way),
-            (Swatch::Dotted(NOT_REACHED), back_only, self.back_only),
+            (ONE_WAY.swatch(tones[0]), no_way_back, self.one_way),
+            (BACK_ONLY.swatch(NOT_REACHED), back_only, self.back_only),
         ];
         let start = (Swatch::Symbol(start_symbol), "start", self.start);
-        let reasons: Vec<String> = figure.refused.iter().map(|refused| format!("{}, not reached", refused.reason)).collect();
-        let refused = reasons.iter().zip(&self.refused).zip(REFUSED.iter().cycle());
-        let refused = refused.map(|((reason, count), tone)| (Swatch::Crossed(*tone), reason.as_str(), *count));
+        let reasons: Vec<(Swatch, String)> = unreached::keys(&figure.refused).collect();
+        let refused = reasons.iter().zip(&self.refused).map(|((swatch, reason), count)| (*swatch, reason.as_str(), *count));
         // A count of 0 posts without a return path is shown too, if return paths were requested.
         let is_told = |&(_, text, count): &(Swatch, &str, u64)| count > 0 || (self.asks_return && text == no_way_back);
         let all = std::iter::once(start).chain(bands).chain(rest).chain(refused).filter(is_told);

@@ -10,9 +10,10 @@ use super::{
     },
     check_size,
     data::{GoalMark, MapPosts},
-    hops::{NOT_REACHED, no_data_symbol, notes},
+    hops::{no_data_symbol, notes},
     panel::{MapPanel, end_keys},
     raster::{self, Pattern, Window},
+    unreached::{NO_HOP, NOT_REACHED},
     values::Steps,
 };
 use crate::quantity::MapPoint;
@@ -69,25 +70,24 @@ impl LegsMapFigure<'_> {
     /// One of the maps; returns where it ends.
     fn layer(&self, sheet: &mut Sheet, layer: &LegsMapLayer, top_mm: f64) -> f64 {
         let (posts, window) = (self.posts, Window::whole(self.posts.dem));
-        let finite = || layer.values.iter().copied().filter(|value| value.is_finite());
-        let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-        let steps = if layer.counts { Steps::of_counts(low, high) } else { Steps::between(low, high) };
+        let values = layer.values.iter().copied();
+        let steps = if layer.counts { Steps::of_counts(values) } else { Steps::of(values) };
         let mut tones = steps.tones();
         tones.push(NOT_REACHED);
         let none = tones.len() - 1;
         let pixels = raster::draw(posts.dem, &window, &tones, |row, col| {
             let at = posts.index(row, col);
-            (!posts.is_gap(at)).then(|| (steps.class(layer.values[at]).unwrap_or(none), Pattern::Plain))
+            (!posts.is_gap(at)).then(|| steps.class(layer.values[at]).map_or((none, NO_HOP), |class| (class, Pattern::Plain)))
         });
         #[expect(clippy::cast_precision_loss, reason = "two or three maps")]
         let map = MapPanel::at_most(posts.dem, &window, top_mm, TALL_MM / self.layers.len().max(1) as f64);
         let end_mm = map.draw(sheet, pixels);
         map.ends(sheet, &self.starts, &self.goals, &[]);
-        let end_mm = paragraph(sheet, &format!("Colours: {}", layer.name), TEXT_MM, false, end_mm + 0.5);
-        let mut entries: Vec<_> = steps.texts().into_iter().zip(&tones).map(|(text, &tone)| (Swatch::Fill(tone), text)).collect();
+        let end_mm = paragraph(sheet, &steps.described(&layer.name), TEXT_MM, false, end_mm + 0.5);
+        let mut entries = steps.keys(&tones);
         let (without, gaps) = (layer.values.iter().filter(|value| !value.is_finite()).count(), posts.gaps());
         if without > gaps {
-            entries.push((Swatch::Fill(NOT_REACHED), layer.none_name.clone()));
+            entries.push((NO_HOP.swatch(NOT_REACHED), layer.none_name.clone()));
         }
         if gaps > 0 {
             entries.push((Swatch::Symbol(no_data_symbol), "no data".to_owned()));

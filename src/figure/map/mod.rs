@@ -1,6 +1,7 @@
 //! Maps: hop bands, continuous values and landing ellipses over a hillshade of the DEM.
 
 mod data;
+mod density;
 mod hillshade;
 mod hops;
 mod landings;
@@ -15,12 +16,14 @@ mod style;
 mod targets;
 mod travel;
 mod travel_map;
+mod unreached;
 mod values;
 
 pub use data::{
     GoalMark, HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure,
     MapPosts, RefusedPosts, ValueMapFigure,
 };
+pub use density::{DensityFigure, draw_density};
 pub use hops::draw_hop_map;
 pub use landings::draw_landing_map;
 pub use legs_map::{LegsMapFigure, LegsMapLayer, draw_legs_map};
@@ -33,6 +36,7 @@ pub use style::RasterStyle;
 pub use targets::{TargetMark, TargetsFigure, VisitRow, draw_targets};
 pub use travel::{TravelFigure, TravelLine, draw_travel};
 pub use travel_map::{TravelMapFigure, draw_travel_map};
+pub use unreached::RefusedBy;
 pub use values::draw_value_map;
 
 use super::FigureError;

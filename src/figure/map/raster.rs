@@ -1,11 +1,14 @@
 //! Classes of posts over a hillshade, as a palette raster.
 
+use std::ops::Range;
+
 use plotters::style::RGBColor;
 
 use super::{
     super::{
         bands::mixed,
         bitmap::{Form, Pixels},
+        keys::Swatch,
         palette::WHITE,
     },
     hillshade::{LEVEL, brightness},
@@ -25,14 +28,18 @@ const DARKEST: f64 = 0.45;
 const BRIGHTEST: f64 = 0.3;
 /// Blend towards white of a class's colour in the legend and on level ground.
 const LIGHTER: f64 = 0.1;
-/// Period of stripes and dots, pixels.
+/// Period of stripes and dots on a raster of [`ENOUGH_PIXELS`] per side, pixels; in proportion on larger ones, so that it is the same on the
+/// page.
 const PERIOD: usize = 9;
+
+/// A map is cut to what matters on it if that is at most this share of it: with more, the cut saves little and costs the overview.
+const WORTH_A_CUT: f64 = 0.7;
 
 /// A window of a DEM: ranges of rows and columns, each with an exclusive end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Window {
-    pub(super) rows: std::ops::Range<usize>,
-    pub(super) cols: std::ops::Range<usize>,
+    pub(super) rows: Range<usize>,
+    pub(super) cols: Range<usize>,
 }
 
 impl Window {
@@ -58,6 +65,18 @@ impl Window {
         Self { rows: span(low.0 - margin, high.0 + margin, dem.rows()), cols: span(low.1 - margin, high.1 + margin, dem.cols()) }
     }
 
+    /// The posts around some points, of a map of which every `stride`-th post has an answer; all posts if that leaves out little, or if
+    /// there are no points.
+    pub(super) fn around_most(dem: &Dem, stride: usize, places: impl Iterator<Item = MapPoint>) -> Self {
+        let (whole, part) = (Self::whole(dem), Self::around(dem, places));
+        let wider = |range: &Range<usize>, count: usize| range.start.saturating_sub(stride)..(range.end + stride).min(count);
+        let part = Self { rows: wider(&part.rows, dem.rows()), cols: wider(&part.cols, dem.cols()) };
+        let posts = |window: &Self| window.rows.len().saturating_mul(window.cols.len());
+        #[expect(clippy::cast_precision_loss, reason = "a share of posts")]
+        let share = posts(&part) as f64 / posts(&whole).max(1) as f64;
+        if share > WORTH_A_CUT { whole } else { part }
+    }
+
     /// Whether one of the posts has no elevation.
     pub(super) fn has_gaps(&self, dem: &Dem) -> bool {
         self.rows.clone().any(|row| self.cols.clone().any(|col| dem.elevation(row, col).is_none()))
@@ -75,32 +94,74 @@ impl Window {
     clippy::cast_sign_loss,
     reason = "the cast saturates, and the ends are clipped to the posts"
 )]
-fn span(from: f64, to: f64, count: usize) -> std::ops::Range<usize> {
+fn span(from: f64, to: f64, count: usize) -> Range<usize> {
     let last = count.saturating_sub(1);
     let (from, to) = ((from.floor() as usize).min(last), (to.ceil() as usize).min(last));
     from..to + 1
 }
 
-/// The pattern over a class's colour.
+/// The pattern over a class's colour: it survives a print in grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pattern {
     Plain,
+    /// Bold stripes that rise to the right, with white edges, so that they are seen on the darkest band too.
     Striped,
+    /// Thin stripes that fall to the right.
+    Falling,
+    /// Bold stripes of both directions.
     Crossed,
     Dotted,
+    /// Thin level lines.
+    Level,
+    /// Thin upright lines.
+    Upright,
+    /// Thin lines of both kinds.
+    Grid,
+    /// Thin level lines with gaps.
+    Dashed,
+}
+
+/// What a pattern puts over a pixel of its class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ink {
+    Black,
+    White,
 }
 
 impl Pattern {
-    fn is_ink(self, column: usize, row: usize) -> bool {
-        match self {
+    /// The ink over a pixel, of a pattern with a period of so many pixels.
+    fn ink(self, column: usize, row: usize, period: usize) -> Option<Ink> {
+        let thin = (period / PERIOD).max(1);
+        let (c, r) = (column % period, row % period);
+        // A step back by one row, modulo the period, as a step of one less than the period forward, since rows are unsigned.
+        let (rising, falling) = ((column + row) % period, (column + (period - 1) * row) % period);
+        let is_black = match self {
             Self::Plain => false,
-            Self::Striped => (column + row) % PERIOD < 2,
-            // A step back by one column, modulo PERIOD, as a step of PERIOD - 1 forward, since columns are unsigned.
-            Self::Crossed => (column + row) % PERIOD < 2 || ((PERIOD - 1) * column + row) % PERIOD < 2,
-            Self::Dotted => {
-                let (c, r) = (column % (2 * PERIOD), row % (2 * PERIOD));
-                (c < 3 && r < 3) || ((PERIOD..PERIOD + 3).contains(&c) && (PERIOD..PERIOD + 3).contains(&r))
-            }
+            Self::Striped if rising >= 2 * thin && (rising < 3 * thin || rising >= period - thin) => return Some(Ink::White),
+            Self::Striped => rising < 2 * thin,
+            Self::Falling => falling < thin,
+            Self::Crossed => rising < 2 * thin || falling < 2 * thin,
+            Self::Dotted => c < 3 * thin && r < 3 * thin && (column / period + row / period).is_multiple_of(2),
+            Self::Level => r < thin,
+            Self::Upright => c < thin,
+            Self::Grid => r < thin || c < thin,
+            Self::Dashed => r < thin && (column / period + row / period).is_multiple_of(2),
+        };
+        is_black.then_some(Ink::Black)
+    }
+
+    /// The sample of a legend for this pattern over a colour.
+    pub(super) const fn swatch(self, colour: RGBColor) -> Swatch {
+        match self {
+            Self::Plain => Swatch::Fill(colour),
+            Self::Striped => Swatch::Striped(colour),
+            Self::Falling => Swatch::Falling(colour),
+            Self::Crossed => Swatch::Crossed(colour),
+            Self::Dotted => Swatch::Dotted(colour),
+            Self::Level => Swatch::Level(colour),
+            Self::Upright => Swatch::Upright(colour),
+            Self::Grid => Swatch::Grid(colour),
+            Self::Dashed => Swatch::DashedOver(colour),
         }
     }
 }
@@ -123,7 +184,8 @@ pub(super) fn draw(
     let side = window.rows.len().max(window.cols.len());
     let up = if every > 1 { 1 } else { (ENOUGH_PIXELS / side.max(1)).max(1) };
     let (rows, cols) = (window.rows.len().div_ceil(every), window.cols.len().div_ceil(every));
-    // White for no-data and black for stripes come first.
+    let period = (PERIOD * rows.max(cols) * up / ENOUGH_PIXELS).max(PERIOD);
+    // White for no-data and black for patterns come first.
     let shades = ((256 - 2) / tones.len().max(1)).clamp(1, SHADES);
     let mut colours = vec![[255; 3], [0; 3]];
     for &tone in tones {
@@ -141,8 +203,12 @@ pub(super) fn draw(
             .collect();
         for down in 0..up {
             for (col, &(index, pattern)) in line.iter().enumerate() {
-                let ink = |along| index != 0 && pattern.is_ink(col * up + along, row * up + down);
-                bytes.extend((0..up).map(|along| if ink(along) { 1 } else { index }));
+                let ink = |along| pattern.ink(col * up + along, row * up + down, period).filter(|_| index != 0);
+                bytes.extend((0..up).map(|along| match ink(along) {
+                    Some(Ink::White) => 0,
+                    Some(Ink::Black) => 1,
+                    None => index,
+                }));
             }
         }
     }
@@ -184,7 +250,7 @@ fn shaded(tone: RGBColor, shade: usize, shades: usize) -> [u8; 3] {
 #[cfg(test)]
 mod tests {
     use super::{super::super::bands::ramp, *};
-    use crate::figure::map::hops::NOT_REACHED;
+    use crate::figure::map::unreached::NOT_REACHED;
 
     /// CIE L*a*b* of an sRGB colour under D65: lightness 0 to 100, and two colour axes whose norm is the chroma.
     fn lab([r, g, b]: [u8; 3]) -> [f64; 3] {

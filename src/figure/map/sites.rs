@@ -8,10 +8,10 @@ use super::{
         keys::{self, Swatch},
         palette::{BLACK, SMALL_MM, TEXT_MM, WHITE},
         picture::{Caption, Picture, paragraph},
-        sheet::{Place, Sheet},
+        sheet::{Pen, Place, Sheet},
     },
     data::MapPosts,
-    hops::{NOT_REACHED, about_raster, no_data_symbol},
+    hops::{about_raster, no_data_symbol},
     names::{Bounds, Taken},
     panel::{MARKER_MM, MapPanel, goal_symbol},
     plan_view::GROUND,
@@ -59,20 +59,23 @@ pub struct SitesFigure<'a> {
 pub fn draw_sites(figure: &SitesFigure<'_>) -> Result<Picture, FigureError> {
     let mut sheet = Sheet::default();
     let top_mm = figure.caption.draw(&mut sheet);
-    let window = Window::whole(figure.dem);
+    let bounds = figure.dem.bounds();
+    let places = figure.sites.iter().map(|site| site.at).chain(figure.targets.iter().copied());
+    let window = Window::around_most(figure.dem, 0, places.filter(|at| bounds.contains(*at)));
     let pixels = raster::draw(figure.dem, &window, &[GROUND], |_, _| Some((0, Pattern::Plain)));
     let map = MapPanel::new(figure.dem, &window, top_mm);
     let end_mm = map.draw(&mut sheet, pixels);
-    let values = || figure.sites.iter().filter_map(|site| site.value);
-    let steps = Steps::between(values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    let steps = Steps::of(figure.sites.iter().filter_map(|site| site.value));
     let tones = steps.tones();
     let shown: Vec<&SiteMark> = figure.sites.iter().filter(|site| map.shows(site.at)).collect();
     let radius_mm = if shown.len() > MANY { 0.55 * RADIUS_MM } else { RADIUS_MM };
     // The best are drawn last, over the others.
     for (number, site) in shown.iter().enumerate().rev() {
-        let tone = site.value.and_then(|value| steps.class(value)).map_or(NOT_REACHED, |class| tones[class]);
         let larger = if number < NAMED && site.value.is_some() { 1.5 } else { 1.0 };
-        dot(&mut sheet, map.place(site.at), larger * radius_mm, tone);
+        match site.value.and_then(|value| steps.class(value)) {
+            Some(class) => dot(&mut sheet, map.place(site.at), larger * radius_mm, tones[class]),
+            None => refused(&mut sheet, map.place(site.at), radius_mm),
+        }
     }
     let mut taken = Taken::default();
     taken.spared.extend(shown.iter().map(|site| map.place(site.at)));
@@ -86,11 +89,11 @@ pub fn draw_sites(figure: &SitesFigure<'_>) -> Result<Picture, FigureError> {
     for site in shown.iter().filter(|site| site.value.is_some()).take(NAMED) {
         map.name(&mut sheet, site.at, &site.name, &mut taken);
     }
-    let legend = format!("Colours: {}; numbers: ranks of the best candidates, which are larger", figure.value_name);
+    let legend = format!("{}; numbers: ranks of the best candidates, which are larger", steps.described(&figure.value_name));
     let end_mm = paragraph(&mut sheet, &legend, TEXT_MM, false, end_mm + 0.5);
-    let mut entries: Vec<_> = steps.texts().into_iter().zip(&tones).map(|(text, tone)| (Swatch::Fill(*tone), text)).collect();
+    let mut entries = steps.keys(&tones);
     if figure.sites.iter().any(|site| site.value.is_none()) {
-        entries.push((Swatch::Fill(NOT_REACHED), "no hop begins there, or none leads to a target".to_owned()));
+        entries.push((Swatch::Symbol(refused_symbol), "no hop begins there, or none leads to a target".to_owned()));
     }
     if !figure.targets.is_empty() {
         entries.push((Swatch::Symbol(goal_symbol), "target".to_owned()));
@@ -102,6 +105,20 @@ pub fn draw_sites(figure: &SitesFigure<'_>) -> Result<Picture, FigureError> {
     let about = about_raster(&MapPosts { dem: figure.dem, stride: 1, per_post: 1 }, &window);
     let end_mm = paragraph(&mut sheet, &about, SMALL_MM, false, end_mm);
     Ok(Picture::page(sheet, end_mm + 2.5))
+}
+
+/// A site without a value: a small cross, which no colour is needed to tell from a disc.
+fn refused(sheet: &mut Sheet, (x, y): Place, radius_mm: f64) {
+    let r = 0.6 * radius_mm;
+    for (colour, width_mm) in [(WHITE, 0.7), (BLACK, 0.3)] {
+        let pen = Pen { colour, width_mm };
+        sheet.line(vec![(x - r, y - r), (x + r, y + r)], pen);
+        sheet.line(vec![(x - r, y + r), (x + r, y - r)], pen);
+    }
+}
+
+fn refused_symbol(sheet: &mut Sheet, at: Place) {
+    refused(sheet, at, RADIUS_MM);
 }
 
 /// A disc in a dark rim in a white one.

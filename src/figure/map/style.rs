@@ -11,8 +11,8 @@ use super::{
         ticks::short,
     },
     data::{HOPS_NOT_SEARCHED, HOPS_UNREACHABLE},
-    hops::NOT_REACHED,
     raster::tone,
+    unreached::NOT_REACHED,
     values::Steps,
 };
 
@@ -36,7 +36,7 @@ impl RasterStyle {
     /// The style of a raster of hop counts, in the classes and colours of the picture.
     pub fn hops(hops: &[i16]) -> Self {
         let most = hops.iter().filter_map(|&hops| u64::try_from(hops).ok()).max();
-        let classes = HopClasses::even(most.map_or(0, |most| most.max(1)));
+        let classes = HopClasses::up_to(most.map_or(0, |most| most.max(1)));
         let mut found = marks();
         found.push((0.0, tone(classes.colour(0)), "start".to_owned()));
         for ((index, &most), text) in classes.0.iter().enumerate().zip(classes.texts()) {
@@ -47,10 +47,9 @@ impl RasterStyle {
         Self { classes: found }
     }
 
-    /// The style of a raster of a continuous value, in up to ten classes between round numbers, with its unit.
+    /// The style of a raster of a continuous value, in at most seven classes between round numbers, with its unit.
     pub fn values(values: &[f32], unit: &str) -> Self {
-        let finite = || values.iter().copied().map(f64::from).filter(|value| value.is_finite());
-        let steps = Steps::between(finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+        let steps = Steps::of(values.iter().copied().map(f64::from));
         let ends = steps.ends.iter().skip(1).copied();
         let classes = ends.zip(steps.tones()).zip(steps.texts());
         Self { classes: classes.map(|((end, tone), text)| (end, tone, format!("{text} {unit}"))).collect() }
@@ -154,10 +153,7 @@ mod tests {
             assert_eq!(labels.len(), found.len(), "{found:?}");
         }
         let hops = classes(&styles[0]);
-        assert_eq!(
-            hops.iter().map(|class| class.0).collect::<Vec<_>>(),
-            [-2.0, -1.0, 0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0]
-        );
+        assert_eq!(hops.iter().map(|class| class.0).collect::<Vec<_>>(), [-2.0, -1.0, 0.0, 10.0, 20.0, 30.0, 40.0]);
         assert_eq!(hops[1].2, "not reached");
         assert!(classes(&styles[3])[0].2.ends_with("m/s & \"<more>\""));
     }

@@ -113,8 +113,13 @@ fn pixels_show_the_class_of_their_post() {
     let Form::Palette(colours) = &image.form else { panic!("a palette") };
     let (up, shades) = (image.width / 20, (colours.len() - 2) / 3);
     for (i, &hops) in hops.iter().enumerate() {
-        for corner in [0, up - 1] {
+        // A pixel off the stripes of posts that are not reached.
+        for corner in [2, up - 2] {
             let index = usize::from(image.bytes[(i / 20 * up + corner) * image.width + i % 20 * up + corner]);
+            if index == 1 {
+                assert_eq!(hops, HOPS_UNREACHABLE, "a pattern over post {i}");
+                continue;
+            }
             // The start's class is that of one hop; classes of 1 and 2 hops, then not reached.
             let class = match hops {
                 HOPS_NO_DATA => {
@@ -157,16 +162,24 @@ fn keep_out_posts_are_a_separate_class_and_zero_posts_without_return_path_are_st
         })
         .collect();
     // A zone over the first two rows, and one over a reached post on a border, which keeps its class.
-    let class = |reason: &str, posts: &dyn Fn(usize) -> bool| RefusedPosts {
+    let class = |by: RefusedBy, reason: &str, posts: &dyn Fn(usize) -> bool| RefusedPosts {
+        by,
         reason: reason.to_owned(),
         posts: (0..240).map(posts).collect(),
     };
     // Of the third row, five posts are dark; of those in the zone the zone counts.
-    let refused = vec![class("keep-out", &|i| i < 40 || i == 100), class("layer sun does not hold", &|i| (30..45).contains(&i))];
+    let refused = vec![
+        class(RefusedBy::Zone, "keep-out", &|i| i < 40 || i == 100),
+        class(RefusedBy::Layer, "layer sun does not hold", &|i| (30..45).contains(&i)),
+    ];
     let figure = HopMapFigure { refused, ..hop_map(posts, &hops, Some(&[true; 240])) };
     let picture = check_picture("hops-keep-out", || draw_hop_map(&figure).unwrap());
     let lettering = texts(&picture);
-    let words = ["keep-out, not reached: 40 posts", "layer sun does not hold, not reached: 5 posts", "not reached: 15 posts"];
+    let words = [
+        "keep-out, not reached: 40 posts",
+        "layer sun does not hold, not reached: 5 posts",
+        "no hop leads there, not reached: 15 posts",
+    ];
     for words in words.into_iter().chain(["no path back to the start: 0 posts"]) {
         assert!(lettering.lines().any(|line| line.ends_with(words)), "{words:?} is missing in {lettering}");
     }
@@ -177,8 +190,11 @@ fn keep_out_posts_are_a_separate_class_and_zero_posts_without_return_path_are_st
     assert!(inked(0).abs_diff(of_a_row * 32 / 81) < of_a_row / 40, "{} of {of_a_row} under stripes", inked(0));
     assert_eq!(inked(5), 0, "no pattern over reached posts");
     assert!(
-        draw_hop_map(&HopMapFigure { refused: vec![RefusedPosts { reason: String::new(), posts: vec![true; 3] }], ..figure })
-            .is_err()
+        draw_hop_map(&HopMapFigure {
+            refused: vec![RefusedPosts { by: RefusedBy::Zone, reason: String::new(), posts: vec![true; 3] }],
+            ..figure
+        })
+        .is_err()
     );
 }
 
@@ -187,6 +203,7 @@ fn value_map<'a>(posts: MapPosts<'a>, values: &'a [f64], name: &str) -> ValueMap
         caption: Caption::new("A map of values & <more>", "Mars"),
         posts,
         values,
+        refused: Vec::new(),
         value_name: name.to_owned(),
         none_name: "not reached".to_owned(),
         starts: Vec::new(),
@@ -208,7 +225,7 @@ fn value_maps_have_round_classes_and_accept_any_values() {
         let picture =
             check_picture("effort-moon", || draw_value_map(&value_map(posts, &values, "least total effort (m/s)")).unwrap());
         let texts = texts(&picture);
-        for words in ["0 to 20", "140 to 148", "not reached", "least total effort (m/s)"] {
+        for words in ["0 to 25", "125 to 150", "not reached", "Colours: least total effort (m/s); from 0 to 148"] {
             assert!(texts.contains(words), "{words:?} is missing in {texts}");
         }
     }

@@ -12,9 +12,10 @@ use super::{
     },
     check_size,
     data::{GoalMark, MapPosts},
-    hops::{NOT_REACHED, no_data_symbol, notes},
+    hops::{no_data_symbol, notes_on_counts},
     panel::{MapPanel, end_keys},
     raster::{self, Pattern, Window, tone},
+    unreached::{NO_HOP, NOT_REACHED},
     values::Steps,
 };
 use crate::quantity::MapPoint;
@@ -63,15 +64,21 @@ pub fn draw_travel_map(figure: &TravelMapFigure<'_>) -> Result<Picture, FigureEr
     let top_mm = figure.caption.draw(&mut sheet);
     let end_mm = figure.means(&mut sheet, top_mm);
     let end_mm = figure.taken(&mut sheet, end_mm + 2.0);
-    let height_mm = notes(&mut sheet, &figure.posts, &Window::whole(figure.posts.dem), end_mm + 0.8) + 2.0;
+    let height_mm = notes_on_counts(&mut sheet, &figure.posts, &figure.window(), end_mm + 0.8) + 2.0;
     Ok(Picture::page(sheet, height_mm))
 }
 
 impl TravelMapFigure<'_> {
+    /// The part of the map that is drawn: the reached nodes, the starts and the goals.
+    fn window(&self) -> Window {
+        let reached = (0..self.classes.len()).filter(|at| self.classes[*at].is_some());
+        self.posts.window(reached, self.starts.iter().copied(), &self.goals, &[])
+    }
+
     /// One of the maps; returns where it ends.
     fn map(&self, sheet: &mut Sheet, top_mm: f64, tones: &[RGBColor], class: impl Fn(usize) -> (usize, Pattern)) -> f64 {
         let posts = self.posts;
-        let window = Window::whole(posts.dem);
+        let window = self.window();
         let pixels = raster::draw(posts.dem, &window, tones, |row, col| {
             let at = posts.index(row, col);
             (!posts.is_gap(at)).then(|| class(at))
@@ -96,23 +103,17 @@ impl TravelMapFigure<'_> {
         let none = CLASSES.len();
         let end_mm = self.map(sheet, top_mm, &tones, |at| match self.classes[at] {
             Some(class) => (class, CLASSES[class].1),
-            None => (none, Pattern::Plain),
+            None => (none, NO_HOP),
         });
-        let swatch = |pattern: Pattern, colour: RGBColor| match pattern {
-            Pattern::Plain => Swatch::Fill(colour),
-            Pattern::Striped => Swatch::Striped(colour),
-            Pattern::Crossed => Swatch::Crossed(colour),
-            Pattern::Dotted => Swatch::Dotted(colour),
-        };
         let mut entries = Vec::new();
         for (class, (_, pattern, words)) in CLASSES.iter().enumerate() {
             let words = self.only.filter(|_| class == 0).unwrap_or(words);
             if let Some(share) = self.share(|found| *found == Some(class)) {
-                entries.push((swatch(*pattern, tones[class]), format!("{words}: {share}")));
+                entries.push((pattern.swatch(tones[class]), format!("{words}: {share}")));
             }
         }
         if let Some(share) = self.share(Option::is_none) {
-            entries.push((Swatch::Fill(NOT_REACHED), format!("not reached over these nodes: {share}")));
+            entries.push((NO_HOP.swatch(NOT_REACHED), format!("not reached over these nodes: {share}")));
         }
         if self.posts.gaps() > 0 {
             entries.push((Swatch::Symbol(no_data_symbol), "no data".to_owned()));
@@ -122,14 +123,13 @@ impl TravelMapFigure<'_> {
     }
 
     fn taken(&self, sheet: &mut Sheet, top_mm: f64) -> f64 {
-        let finite = || self.values.iter().copied().filter(|value| value.is_finite());
-        let steps = Steps::between(finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+        let steps = Steps::of(self.values.iter().copied());
         let mut tones = steps.tones();
         tones.push(NOT_REACHED);
         let none = tones.len() - 1;
-        let end_mm = self.map(sheet, top_mm, &tones, |at| (steps.class(self.values[at]).unwrap_or(none), Pattern::Plain));
-        let end_mm = paragraph(sheet, &format!("Colours: {}", self.value_name), TEXT_MM, false, end_mm + 0.5);
-        let entries: Vec<_> = steps.texts().into_iter().zip(&tones).map(|(text, &tone)| (Swatch::Fill(tone), text)).collect();
-        keys::draw(sheet, &entries, end_mm + 2.5)
+        let end_mm = self
+            .map(sheet, top_mm, &tones, |at| steps.class(self.values[at]).map_or((none, NO_HOP), |class| (class, Pattern::Plain)));
+        let end_mm = paragraph(sheet, &steps.described(&self.value_name), TEXT_MM, false, end_mm + 0.5);
+        keys::draw(sheet, &steps.keys(&tones), end_mm + 2.5)
     }
 }

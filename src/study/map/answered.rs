@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::{
     super::Defect,
-    MapQuestion, MapStudyError, PreparedMap, Spot,
+    MapQuestion, MapStudyError, PreparedMap, RefusedNodes, Spot,
     aim::{Aim, allowed},
+    refused::refused_nodes,
 };
 use crate::{
     ballistics::PathBounds,
@@ -43,6 +44,8 @@ pub struct MapStudy {
     pub back: Option<HopMap>,
     /// The single hops from every post, if asked for.
     pub mobility: Option<Mobility>,
+    /// The nodes that refuse every contact, by reason, if asked for; otherwise empty.
+    pub refused: Vec<RefusedNodes>,
     /// For each post, the one that its last hop comes from, as [`HopMap::predecessors`] gives it; [`NO_PREDECESSOR`] without one.
     pub predecessors: Option<Vec<i32>>,
     /// The totals of each amount of the objective at every node, NaN without a path; empty where the map has fewest hops.
@@ -60,6 +63,7 @@ struct Found {
     out: HopMap,
     back: Option<HopMap>,
     mobility: Option<Mobility>,
+    refused: Vec<RefusedNodes>,
     predecessors: Option<Vec<i32>>,
     least: Vec<(Amount, Vec<f64>)>,
     amounts: Vec<(Amount, Vec<f64>)>,
@@ -111,7 +115,7 @@ impl PreparedMap {
         let keys = flown.as_ref().map(|(scenario, _)| scenario.uncertainty.clone().unwrap_or_default());
         // Run inside the rayon pool: work started by a pool thread is picked up faster than work submitted from outside.
         let found = rayon::scope(|_| self.found(question, progress))?;
-        let Found { out, back, mobility, predecessors, least, amounts, goal_hops, paths, warnings: of_ends } = found;
+        let Found { out, back, mobility, refused, predecessors, least, amounts, goal_hops, paths, warnings: of_ends } = found;
         let trials = match &keys {
             Some(keys) => self.flown(question, &paths, keys, progress)?,
             None => vec![None; paths.len()],
@@ -162,7 +166,7 @@ impl PreparedMap {
         warnings.extend(constant_gravity_warnings(&scenario.body, Extremes::of(&hops)));
         warnings.extend(unplanned_bounces(&hops));
         warnings.extend(self.spanned_nodes(&hops).and_then(|spanned| short_hops(scenario, "hops to the goals", spanned)));
-        Ok(MapStudy { answer, warnings, out, back, mobility, predecessors, least, amounts, goal_hops, paths })
+        Ok(MapStudy { answer, warnings, out, back, mobility, refused, predecessors, least, amounts, goal_hops, paths })
     }
 
     /// Searches, and checks the path to every goal.
@@ -214,8 +218,9 @@ impl PreparedMap {
             }
         }
         let predecessors = question.predecessors.then(|| out.predecessors(&hops, NO_PREDECESSOR));
+        let refused = if question.refusals { refused_nodes(&hops) } else { Vec::new() };
         let warnings = self.refusals(&hops);
-        Ok(Found { out, back, mobility, predecessors, least, amounts, goal_hops, paths, warnings })
+        Ok(Found { out, back, mobility, refused, predecessors, least, amounts, goal_hops, paths, warnings })
     }
 
     /// Warnings for starts and goals at which no hop can take off or land.

@@ -9,6 +9,7 @@ mod error;
 mod memory;
 mod prepared;
 mod question;
+mod refused;
 
 pub(super) use aim::{Aim, allowed};
 pub use answered::{MapStudy, NO_PREDECESSOR};
@@ -17,6 +18,7 @@ pub use memory::MapMemory;
 pub(in crate::study) use prepared::spot;
 pub use prepared::{PreparedMap, Spot};
 pub use question::{MapQuestion, NamedPlace};
+pub use refused::{NodeRefusal, RefusedNodes};
 
 use crate::progress::Progress;
 

@@ -41,6 +41,8 @@ pub struct MapQuestion<'a> {
     pub ranks_sites: bool,
     /// Also the post that the last hop to each post comes from.
     pub predecessors: bool,
+    /// Also the nodes that refuse every contact, by reason.
+    pub refusals: bool,
     /// Also trials along the path to every goal.
     pub trials: bool,
     /// Posts that need more hops are not searched; as a budget of hops.

@@ -5,13 +5,15 @@ use nalgebra::Vector2;
 use super::Simulated;
 use crate::{
     figure::{
-        Caption, ConvergencePoint, ErrorQuantiles, FigureError, Flight, FlownFigure, FlownTrial, LandingBoxes, LandingCloud,
-        LandingEllipse, LandingMapFigure, OutcomeBars, Picture, SimulationFigure, Success, draw_landing_map, draw_simulation,
+        Caption, ConvergencePoint, DensityFigure, ErrorQuantiles, FigureError, Flight, FlownFigure, FlownTrial, LandingBoxes,
+        LandingCloud, LandingEllipse, LandingMapFigure, OutcomeBars, Picture, SimulationFigure, Success, draw_density,
+        draw_landing_map, draw_simulation,
     },
     path::Hop,
     quantity::{ChainPoint, MapPoint},
+    report::DensityRecord,
     scenario::Scenario,
-    uncertainty::{Distribution, HopRecord, LandingSummary, Summary, TrialOutcome, Uncertainty, Wilson},
+    uncertainty::{Distribution, HopRecord, LandingSummary, RestDensity, Summary, TrialOutcome, Uncertainty, Wilson},
 };
 
 impl Simulated {
@@ -36,6 +38,33 @@ impl Simulated {
         let caption = caption(&self.planned.case.scenario, std::iter::once(summary));
         Some(draw_landing_map(&LandingMapFigure { caption, dem, path, clouds }))
     }
+}
+
+impl Simulated {
+    /// Where the trials end on the map, with the shares that the answer states; `None` if nothing was flown.
+    ///
+    /// # Errors
+    /// [`FigureError`].
+    pub fn density_map(&self, density: &RestDensity) -> Option<Result<Picture, FigureError>> {
+        let summary = self.summaries.first()?;
+        let ends: Vec<_> = self.planned.path.iter().flat_map(|path| &path.hops).filter_map(Hop::map_ends).collect();
+        let path = ends.first().map(|(takeoff, _)| *takeoff).into_iter().chain(ends.iter().map(|(_, landing)| *landing)).collect();
+        let mut caption = caption(&self.planned.case.scenario, std::iter::once(summary));
+        caption.lines.extend(DensityRecord::new(density).lines());
+        Some(draw_rests(density, caption, path))
+    }
+}
+
+/// The picture of where trials end.
+pub(in crate::study) fn draw_rests(density: &RestDensity, caption: Caption, path: Vec<MapPoint>) -> Result<Picture, FigureError> {
+    draw_density(&DensityFigure {
+        caption,
+        dem: density.dem(),
+        shares: &density.ends(),
+        value_name: "share of all trials that end in the cell of a post".to_owned(),
+        path,
+        area: density.area_outlines(),
+    })
 }
 
 /// The sheet with all panels of trials; without `flown` none of their flights.

@@ -247,6 +247,18 @@ impl KeepOut {
         }
     }
 
+    /// The outlines of all zones, for drawing: the rings of polygons, each closed, and of a mask the borders between its pixels.
+    pub fn outlines(&self) -> Vec<Vec<MapPoint>> {
+        match &self.zones {
+            Zones::Polygons(polygons) => polygons.iter().flat_map(Polygon::outlines).collect(),
+            Zones::Mask(mask) => {
+                let mut found = Vec::new();
+                borders_of(mask, &is_zone, &mut |border| found.push(vec![border.min, border.max]));
+                found
+            }
+        }
+    }
+
     /// The parts of a line on pixels where contacts are forbidden.
     fn masked(&self, mask: &Dem, line: &Line) -> Result<Vec<(f64, f64)>, TerrainError> {
         let cells = cells_on(line, mask);

@@ -29,6 +29,14 @@ impl Polygon {
         Some(Self { rings, bounds })
     }
 
+    /// Its rings, each closed by its first point at its end as well.
+    pub(super) fn outlines(&self) -> impl Iterator<Item = Vec<MapPoint>> + '_ {
+        self.rings.iter().map(|ring| {
+            let closes = ring.first().filter(|first| ring.last() != Some(first));
+            ring.iter().chain(closes).copied().collect()
+        })
+    }
+
     /// The smallest rectangle around it.
     pub(super) fn bounds(&self) -> MapBounds {
         self.bounds

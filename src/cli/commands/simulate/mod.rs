@@ -14,7 +14,7 @@ use chta::{
 use crate::cli::{
     Answer, Failure,
     args::SimulateArgs,
-    density::DensityFile,
+    density::DensityFiles,
     effects::Purpose,
     hints::further_means,
     inputs,
@@ -52,7 +52,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let plot_map = output::begin_picture("--plot-map", args.plot_map.as_deref())?;
     let tally = args.tally.as_deref().map(Pending::begin).transpose()?;
-    let mut density = DensityFile::begin(args.density.as_deref())?;
+    let mut density = DensityFiles::begin(args)?;
     let in_time = TrajectoryFile::begin(&args.trajectory)?;
     let quiet = args.common.quiet;
     let planned = plan_to_fly(args, &loaded, &Progress::new(quiet))?;

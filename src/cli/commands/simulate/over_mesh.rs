@@ -25,6 +25,7 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
         ("--experiment", args.experiment.is_some(), "is flown along a profile"),
         ("--output", args.output.is_some(), "writes landings along a profile"),
         ("--density", args.density.is_some(), "counts landings on a map"),
+        ("--plot-density", args.plot_density.is_some(), "draws landings on a map"),
         ("--plot-map", args.plot_map.is_some(), "draws landings on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
     ])?;

@@ -16,6 +16,7 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded) -> Result<Answer, Failur
     not_for_targets::refuse(&[
         ("--output", args.output.is_some(), "writes the landings of a path to one goal"),
         ("--density", args.density.is_some(), "counts the landings of a path to one goal"),
+        ("--plot-density", args.plot_density.is_some(), "draws the landings of a path to one goal"),
         ("--plot-map", args.plot_map.is_some(), "draws the landings of a path to one goal"),
         ("--tally", args.tally.is_some(), "writes a tally of a path to one goal"),
     ])?;

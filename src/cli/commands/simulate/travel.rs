@@ -15,6 +15,7 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded) -> Result<Answer, Failur
     not_for_travel::refuse(&[
         ("--output", args.output.is_some(), "writes the landings of hops"),
         ("--density", args.density.is_some(), "counts the landings of hops"),
+        ("--plot-density", args.plot_density.is_some(), "draws the landings of hops"),
         ("--plot-map", args.plot_map.is_some(), "draws the landings of hops"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
         ("--tally", args.tally.is_some(), "writes a tally of hops"),

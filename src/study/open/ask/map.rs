@@ -126,6 +126,7 @@ impl Draft {
             mobility: asked.mobility,
             ranks_sites: false,
             predecessors: asked.predecessors,
+            refusals: false,
             trials: asked.trials,
             hops_max: asked.hops_max,
             amounts: asked.amounts.clone(),

@@ -58,6 +58,7 @@ impl Draft {
             mobility: false,
             ranks_sites: true,
             predecessors: false,
+            refusals: false,
             trials: false,
             hops_max: None,
             amounts: Vec::new(),
