@@ -16,7 +16,7 @@ import chta
 SIMPLE = "data/scenarios/simple.toml"
 
 
-@pytest.mark.parametrize("name", ["chta", "chta._scenario", "chta._arrays", "chta.campaign"])
+@pytest.mark.parametrize("name", ["chta", "chta._scenario", "chta._arrays", "chta.campaign", "chta.xarray"])
 def test_examples_of_docstrings(name: str) -> None:
     failed, tried = doctest.testmod(importlib.import_module(name), optionflags=doctest.ELLIPSIS)
     assert failed == 0 and tried > 0

@@ -25,6 +25,7 @@ mod page;
 mod progress;
 mod run_folder;
 mod sites_input;
+mod tallies;
 mod threads;
 mod trajectory;
 mod unanswered;
