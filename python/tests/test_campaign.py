@@ -79,22 +79,33 @@ def test_keys_and_parts_are_of_the_content_of_files(tmp_path: pathlib.Path) -> N
     assert len(list(folder.iterdir())) == 3
 
 
+QUICK = {"uncertainty.policy": "open-loop", "search.risk": "ignored"}
+
+
 def test_trials_in_ranges_are_the_bytes_of_the_single_run(tmp_path: pathlib.Path) -> None:
-    quick = {"uncertainty.policy": "open-loop", "search.risk": "ignored"}
-    for path in ("data/scenarios/rolling_surely.toml", "data/mesh_scenarios/rubble.toml"):
-        scenario = chta.Scenario.open(path, set=quick if "rolling" in path else None)
-        whole = scenario.simulate(trials=110, seed=3, success_min=0.2)
-        parts = chta.campaign.simulate(scenario, trials=110, seed=3, batch=40, success_min=0.2, folder=tmp_path / "parts")
-        assert parts.json() == whole.json() and parts.holds == whole.holds
-        times = {part: part.stat().st_mtime_ns for part in (tmp_path / "parts").iterdir()}
-        again = chta.campaign.simulate(scenario, trials=110, seed=3, batch=40, success_min=0.2, folder=tmp_path / "parts")
-        assert again.json() == whole.json() and times == {part: part.stat().st_mtime_ns for part in times}
-    scenario = chta.Scenario.open("data/scenarios/rolling_surely.toml", set={**quick, "uncertainty.trials": 30})
+    scenario = chta.Scenario.open("data/scenarios/rolling_surely.toml", set=QUICK)
+    asked = {"trials": 110, "seed": 3, "success_min": 0.2}
+    whole = scenario.simulate(**asked)
+    parts = chta.campaign.simulate(scenario, batch=40, folder=tmp_path / "parts", **asked)
+    assert parts.json() == whole.json() and parts.holds == whole.holds
+    times = {part: part.stat().st_mtime_ns for part in (tmp_path / "parts").iterdir()}
+    again = chta.campaign.simulate(scenario, batch=40, folder=tmp_path / "parts", **asked)
+    assert len(times) == 3 and again.json() == whole.json() and times == {part: part.stat().st_mtime_ns for part in times}
+    scenario = scenario.with_keys({"uncertainty.trials": 30})
     first = scenario.tally(0, 20)
     with pytest.raises(chta.InputError, match="expected those from 0 to 29"):
         scenario.merged([first])
     with pytest.raises(chta.InputError, match="another scenario"):
         scenario.with_keys({"uncertainty.seed": 9}).merged([first, scenario.tally(20, 10)])
+
+
+def test_trials_over_a_mesh_merge_too() -> None:
+    few = {"search.contacts_max": 60, "uncertainty.policy": "open-loop", "uncertainty.trials": 30}
+    scenario = chta.Scenario.open("data/mesh_scenarios/overhang.toml", set={**few, "uncertainty.takeoff_speed_sigma_fraction": 0.01})
+    tallies = [scenario.tally(first, 15) for first in (15, 0)]
+    whole = scenario.simulate()
+    assert whole.success_rate is not None
+    assert scenario.merged(tallies).json() == whole.json()
 
 
 def test_a_killed_worker_loses_nothing(tmp_path: pathlib.Path) -> None:

@@ -119,7 +119,7 @@ def test_arenas() -> None:
         (("--random", "5", "--seed", "4", "--random-sizes-m", "1,2"), {"random": 5, "seed": 4, "random_sizes_m": [1, 2]}),
         (("--set", "jumper.rise_max_m=0.1"), {"set": {"jumper.rise_max_m": 0.1}}),
         (("--set", "jumper.rise_mx_m=0.1"), {"set": {"jumper.rise_mx_m": 0.1}}),
-        (("--compare", "--nodes", "100"), {"compare": True, "nodes": 100}),
+        (("--compare", "--nodes", "40"), {"compare": True, "nodes": 40}),
     ):
         same(("arena", path, *words), lambda asked=asked: chta.arena(path, **asked))
     with pytest.raises(chta.ScenarioError) as refused:
@@ -144,7 +144,7 @@ def test_comparisons(tmp_path: pathlib.Path) -> None:
     same(("compare", *simple, "--require-all", "--set", f"{key}=3.0"), lambda: chta.compare(simple, set={key: 3.0}))
     meshes = ["data/mesh_scenarios/rubble.toml", "data/mesh_scenarios/overhang.toml"]
     same(("compare", *meshes, "--require-all"), lambda: chta.compare(meshes))
-    drives = sorted(str(path.relative_to(ROOT)) for path in (ROOT / "data/drive").glob("*.toml"))[:2]
+    drives = ["data/drive/mars_rover.toml"] * 2
     same(("compare", *drives, "--require-all"), lambda: chta.compare(drives))
     # A scenario that fails has a row with its error.
     same(("compare", simple[0], drives[0], "--require-all"), lambda: chta.compare([simple[0], drives[0]]))
@@ -157,7 +157,7 @@ def test_trades_of_legs() -> None:
     few = ("--set", "search.contacts_max=20")
     open_ = chta.Scenario.open(path, set={"search.contacts_max": 20})
     same(
-        ("trade", path, *few, "--vary", "robot.cone=kc,k", "--require-all"), lambda: open_.trade({"robot.cone": ["kc", "k"]})
+        ("trade", path, *few, "--vary", "robot.cone=kc,exact", "--require-all"), lambda: open_.trade({"robot.cone": ["kc", "exact"]})
     )
     robots = ["data/robots/three_legs.toml", "data/robots/six_legs.toml"]
     same(

@@ -308,7 +308,7 @@ class Scenario:
         """The fewest hops, or no path, for every value of one or two keys: ``{"hopper.takeoff_speed_max_m_s": (2, 6, 9)}`` is nine
         values from 2 to 6.
 
-        Of a robot with legs robots and kinds of cones are compared: ``{"robot.cone": ["kc", "k"], "robot.file": [...]}``."""
+        Of a robot with legs robots and kinds of cones are compared: ``{"robot.cone": ["kc", "exact"], "robot.file": [...]}``."""
         if any(key in ("robot.cone", "robot.file") for key in vary):
             others = [key for key in vary if key not in ("robot.cone", "robot.file")]
             if others or prove:
