@@ -303,8 +303,8 @@ class Arena(Answer):
         """Draws the boxes and the path, seen from above (extra ``plot``)."""
         axes = _axes(ax)
         for box in self.document()["scenario"]["box"]:
-            x, y = box["x_m"], box["y_m"]
-            outline = np.array([[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]])
+            centre, size = np.array(box["centre_m"]), np.array(box["size_m"])
+            outline = centre + size / 2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
             axes.fill(outline[:, 0], outline[:, 1], color="#bbbbbb")
         axes.plot([point["x_m"] for point in self.points], [point["y_m"] for point in self.points], color="#0072B2")
         axes.set_aspect("equal")

@@ -126,7 +126,7 @@ class Chain:
         >>> flat = chta.Chain.from_arrays(
         ...     np.arange(0, 41, 4), np.zeros(11), body="moon", hopper=chta.Hopper(4, 4), surface=chta.Surface(0.6))
         >>> flat.plan(0, 40).hop_count
-        6
+        5
         """
         keys: dict[str, Any] = dict(search or {})
         named = {

@@ -335,8 +335,9 @@ class Scenario:
 
         >>> import chta
         >>> legs = chta.Scenario.open("data/mesh_scenarios/three_legs.toml")
-        >>> legs.stance((0, 0, 1)).stands
-        True
+        >>> stood = legs.stance((0, 0, 1), heading_deg=30, height_m=0.3)
+        >>> stood.kind, len(stood["rose"])
+        ('stance', 72)
         """
         place, file = (None if path is None else os.fspath(path) for path in (terrain, robot))
         return Stance(self._draft.stance([float(value) for value in at_m], place, file, heading_deg, height_m, up, headings))
@@ -373,7 +374,7 @@ def compare(
     >>> import chta
     >>> both = chta.compare(["data/scenarios/simple.toml", "data/scenarios/simple_reduced.toml"])
     >>> [row["hops"] for row in both.rows]
-    [1, 3]
+    [1, 5]
     """
     drafts = [scenario_of(source, set)._draft for source in scenarios]
     return Comparison(_chta.Draft.compare(drafts, prove_cells_max if prove else None, threads, progress))
