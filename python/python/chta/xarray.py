@@ -27,7 +27,6 @@ STEP_TOLERANCE = 1e-6
 """How far the spacing of coordinates may differ, as a share of it."""
 
 
-@xr.register_dataarray_accessor("chta")
 class ChtaAccessor:
     """Hops over a DataArray of elevations with evenly spaced coordinates ``y`` and ``x``, m: the centres of the pixels."""
 
@@ -87,7 +86,7 @@ class ChtaAccessor:
     ) -> xr.Dataset:
         """`chta.Dem.mobility`. A lazy array gives a lazy answer, block by block with the posts within reach around it: ``reach_m``, or
         ``v^2 / g`` of the machine, is how far one hop may go."""
-        machine = {"hopper": hopper, "surface": surface, "body": body}
+        machine: dict[str, Any] = {"hopper": hopper, "surface": surface, "body": body}
         if self._array.chunks is None:
             return self._as_given(self.to_dem().mobility(**machine, threads=threads).to_xarray())
         dx, _, _, _, down, _ = self.transform
@@ -123,6 +122,10 @@ class ChtaAccessor:
         if named.sizes == dict(zip((y, x), self._array.shape)):
             named = named.assign_coords({name: coordinate for name, coordinate in self._array.coords.items()})
         return cast(xr.Dataset, named)
+
+
+# xarray states no types for its registration.
+cast(Any, xr).register_dataarray_accessor("chta")(ChtaAccessor)
 
 
 def _step(coordinate: xr.DataArray, name: str) -> float:
