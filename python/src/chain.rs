@@ -6,6 +6,7 @@ use chta::{
     quantity::{Angle, ChainPoint},
     report::HopAnswer,
     scenario::Scenario,
+    study::open::{self, ChainAsked},
     world::{FrictionCone, Limit},
 };
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
@@ -13,6 +14,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::{
+    draft::{Reply, WORDING, proof},
     errors,
     machine::{complete, scenario_of},
     watch::{Watch, watched},
@@ -32,6 +34,8 @@ type AngleArrays<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, B
 pub(crate) struct Chain {
     test: HopTest,
     scenario: Scenario,
+    /// The chain as given: a plan is made for the machine's own commands.
+    given: PolygonalChain,
 }
 
 /// The code of a limit: its index.
@@ -135,8 +139,9 @@ impl Chain {
         let geometry = PolygonalChain::new(vertices, grounds, None).map_err(|error| refused(&error))?;
         // As every question about single hops, for exact commands.
         let hopper = scenario.hopper.with_any_command();
+        let given = geometry.clone();
         let chain = ConstrainedChain::new(geometry, &hopper, scenario.body.gravity, &scenario.surface);
-        Ok(Self { test: HopTest::new(chain.map_err(|error| refused(&error))?), scenario })
+        Ok(Self { test: HopTest::new(chain.map_err(|error| refused(&error))?), scenario, given })
     }
 
     /// Hops between pairs of positions: least and greatest take-off angle, degrees, NaN without a hop; and the code of the limit that leaves
@@ -170,5 +175,26 @@ impl Chain {
         let answer = HopAnswer::new(&self.test, &takeoff, &landing, self.scenario.search.takeoff);
         let answer = answer.ok_or_else(|| errors::input(py, "to_x_m", to_x_m, "another place than from_x_m"))?;
         serde_json::to_string(&answer).map_err(|error| errors::plain(py, errors::Class::Other, error))
+    }
+
+    /// A path along the chain, for the machine, surface, body and search of these tables.
+    #[pyo3(signature = (machine, start_x_m=None, goal_x_m=None, prove_cells=None, verify=false, threads=None, progress=None))]
+    fn plan(
+        &self,
+        py: Python<'_>,
+        machine: &str,
+        start_x_m: Option<f64>,
+        goal_x_m: Option<f64>,
+        prove_cells: Option<usize>,
+        verify: bool,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Reply> {
+        let tables = serde_json::from_str(machine).map_err(|error| errors::input(py, "tables", error, "JSON"))?;
+        let draft = open::Draft { wording: WORDING, ..open::Draft::of_tables(&tables, "".as_ref()) };
+        let asked = ChainAsked { start_x_m, goal_x_m, proof: proof(prove_cells), verify };
+        let chain = self.given.clone();
+        let answer = watched(py, threads, progress.as_ref(), |watch| draft.plan_along(chain, &asked, watch))?;
+        answer.map(Reply).map_err(|error| errors::raised(py, &error))
     }
 }

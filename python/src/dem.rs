@@ -7,7 +7,7 @@ use chta::{
     quantity::MapPoint,
     reach::map::{Journey, PostHops, Search, Source, mobility, search},
     study::coarse_dem_warning,
-    terrain::{GeoReference, OverlaidDem, Overlays, TerrainError, check_map_scale, read_dem},
+    terrain::{GeoReference, MapProjection, OverlaidDem, Overlays, TerrainError, check_map_scale, read_dem},
 };
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -39,13 +39,27 @@ fn refused(py: Python<'_>, error: &TerrainError) -> PyErr {
 }
 
 /// The georeference of an affine transform.
-fn georeference(py: Python<'_>, [dx_m, b, left, d, down, top]: [f64; 6]) -> PyResult<GeoReference> {
+fn georeference(py: Python<'_>, [dx_m, b, left, d, down, top]: [f64; 6], crs: Option<&[String]>) -> PyResult<GeoReference> {
     if b != 0.0 || d != 0.0 || down >= 0.0 || dx_m <= 0.0 {
         let found = format!("({dx_m}, {b}, {left}, {d}, {down}, {top})");
         return Err(errors::input(py, "transform", found, "(dx, 0, left, 0, -dy, top) in metres: north up, as rasterio gives it"));
     }
     let north_west = MapPoint::new(left + dx_m / 2.0, top + down / 2.0);
-    GeoReference::local(north_west, dx_m, -down).map_err(|error| refused(py, &error))
+    let local = GeoReference::local(north_west, dx_m, -down).map_err(|error| refused(py, &error))?;
+    let Some(stated) = crs else { return Ok(local) };
+    let mut first = None;
+    for text in stated {
+        match text.parse::<MapProjection>() {
+            Ok(projection) => return Ok(local.with_projection(&projection)),
+            Err(error) => first = first.or(Some(error.to_string())),
+        }
+    }
+    Err(errors::input(
+        py,
+        "crs",
+        stated.first().map_or("empty", String::as_str),
+        &first.unwrap_or_else(|| "a map in metres".to_owned()),
+    ))
 }
 
 impl Dem {
@@ -87,15 +101,32 @@ impl Dem {
 
     /// From 64-bit elevations, row after row from the north, NaN without an elevation.
     #[staticmethod]
-    fn of_double(py: Python<'_>, rows: usize, cols: usize, z_m: PyReadonlyArray1<'_, f64>, transform: [f64; 6]) -> PyResult<Self> {
-        let dem = chta::terrain::Dem::new(rows, cols, z_m.as_slice()?.to_vec(), georeference(py, transform)?);
+    #[pyo3(signature = (rows, cols, z_m, transform, crs=None))]
+    fn of_double(
+        py: Python<'_>,
+        rows: usize,
+        cols: usize,
+        z_m: PyReadonlyArray1<'_, f64>,
+        transform: [f64; 6],
+        crs: Option<Vec<String>>,
+    ) -> PyResult<Self> {
+        let dem = chta::terrain::Dem::new(rows, cols, z_m.as_slice()?.to_vec(), georeference(py, transform, crs.as_deref())?);
         dem.map(|dem| Self(Arc::new(dem))).map_err(|error| refused(py, &error))
     }
 
     /// The same from 32-bit elevations, which are kept as they are.
     #[staticmethod]
-    fn of_single(py: Python<'_>, rows: usize, cols: usize, z_m: PyReadonlyArray1<'_, f32>, transform: [f64; 6]) -> PyResult<Self> {
-        let dem = chta::terrain::Dem::from_single(rows, cols, z_m.as_slice()?.to_vec(), georeference(py, transform)?);
+    #[pyo3(signature = (rows, cols, z_m, transform, crs=None))]
+    fn of_single(
+        py: Python<'_>,
+        rows: usize,
+        cols: usize,
+        z_m: PyReadonlyArray1<'_, f32>,
+        transform: [f64; 6],
+        crs: Option<Vec<String>>,
+    ) -> PyResult<Self> {
+        let dem =
+            chta::terrain::Dem::from_single(rows, cols, z_m.as_slice()?.to_vec(), georeference(py, transform, crs.as_deref())?);
         dem.map(|dem| Self(Arc::new(dem))).map_err(|error| refused(py, &error))
     }
 

@@ -3,14 +3,19 @@
 use std::path::PathBuf;
 
 use chta::{
+    arena::{RandomBoxes, Reading, RrtStarOptions},
+    ballistics::stance::ConeKind,
     figure::PictureFormat,
     graph::proof::DEFAULT_BUDGET_CELLS,
+    ground::StandsUp,
     planner::Amount,
     quantity::MapPoint,
     study::{
-        Front, Proof, Requirement, SimulateOptions, SweptKey,
+        ArenaPlanner, Front, Proof, Requirement, SimulateOptions, SweptKey,
         map::{MapStudy, PreparedMap},
-        open::{self, AskError, HopAsked, MapAsked, PlanAsked, SitesAsked, Wording},
+        open::{
+            self, ArenaAsked, AskError, FanAsked, HopAsked, MapAsked, PlanAsked, SharedInputs, SitesAsked, StanceAsked, Wording,
+        },
     },
 };
 use numpy::{IntoPyArray, PyArray1};
@@ -24,7 +29,7 @@ use crate::{
 
 /// An answer: its document and its picture.
 #[pyclass(frozen, module = "chta._chta")]
-pub(crate) struct Reply(open::Reply);
+pub(crate) struct Reply(pub(crate) open::Reply);
 
 #[pymethods]
 impl Reply {
@@ -110,14 +115,14 @@ impl Rasters {
 pub(crate) struct Draft(open::Draft);
 
 /// The words of documents: those of the command, so that their bytes are the same.
-const WORDING: Wording =
+pub(crate) const WORDING: Wording =
     Wording { question: "command", of_map: "--goal, --effort, --amount-output or --simulate", file_name: open::relative_name };
 
 fn points(at_m: Vec<(f64, f64)>) -> Vec<MapPoint> {
     at_m.into_iter().map(|(x, y)| MapPoint::new(x, y)).collect()
 }
 
-fn proof(cells: Option<usize>) -> Option<Proof> {
+pub(crate) fn proof(cells: Option<usize>) -> Option<Proof> {
     cells.map(|cells| Proof { budget_cells: if cells == 0 { DEFAULT_BUDGET_CELLS } else { cells } })
 }
 
@@ -232,6 +237,50 @@ impl Draft {
         self.ask(py, (threads, progress), |draft, watch| draft.simulate(&options, watch)).map(Reply)
     }
 
+    /// The tally of some trials as JSON; `None` without a path.
+    #[pyo3(signature = (first_trial, trials, threads=None, progress=None))]
+    fn tally(
+        &self,
+        py: Python<'_>,
+        first_trial: u64,
+        trials: u64,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Option<String>> {
+        let Some(end) = first_trial.checked_add(trials) else {
+            return Err(errors::input(py, "first_trial", first_trial, "a smaller number"));
+        };
+        self.ask(py, (threads, progress), |draft, watch| draft.tally(first_trial..end, watch))
+    }
+
+    /// The answer of trials that were flown in parts, by their tallies.
+    #[pyo3(signature = (tallies, success_min=None, threads=None, progress=None))]
+    fn merged(
+        &self,
+        py: Python<'_>,
+        tallies: Vec<String>,
+        success_min: Option<f64>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Reply> {
+        let options = SimulateOptions { success_min, ..SimulateOptions::default() };
+        self.ask(py, (threads, progress), |draft, watch| draft.merged(&tallies, &options, watch)).map(Reply)
+    }
+
+    /// The same, whose variants read their terrain together.
+    fn sharing(&self) -> Self {
+        Self(open::Draft { shared: Some(SharedInputs::default()), ..self.0.clone() })
+    }
+
+    /// The checksums of the files that the scenario names.
+    fn checksums(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let scenario = self.0.validated(true).map_err(|found| errors::problems(py, &found))?;
+        let shared = self.0.shared.clone().unwrap_or_default();
+        let files = shared.checksums(&scenario, &self.0.base, &|path| path.display().to_string());
+        let files = files.map_err(|error| errors::raised(py, &error.into()))?;
+        Ok(files.into_iter().map(|file| file.sha256).collect())
+    }
+
     /// A path, and its trials where the scenario has errors.
     #[pyo3(signature = (threads=None, progress=None))]
     fn run(&self, py: Python<'_>, threads: Option<usize>, progress: Option<Py<PyAny>>) -> PyResult<(Reply, Option<Reply>)> {
@@ -344,4 +393,146 @@ impl Draft {
         let swept = swept.map_err(|error| errors::raised(py, &error.into()))?;
         self.ask(py, (threads, progress), |draft, watch| draft.trade(&swept, proof(prove_cells), watch)).map(Reply)
     }
+
+    /// Robots with legs and kinds of cones compared.
+    #[pyo3(signature = (robots, cones, threads=None, progress=None))]
+    fn trade_legs(
+        &self,
+        py: Python<'_>,
+        robots: Vec<PathBuf>,
+        cones: Vec<String>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Reply> {
+        let named = |name: &String| ConeKind::ALL.into_iter().find(|kind| kind.name() == name);
+        let names = || format!("one of {}", ConeKind::ALL.map(ConeKind::name).join(", "));
+        let kinds = cones.iter().map(|name| named(name).ok_or_else(|| errors::input(py, "robot.cone", name, &names())));
+        let kinds: Vec<_> = kinds.collect::<PyResult<_>>()?;
+        self.ask(py, (threads, progress), |draft, watch| draft.trade_legs(robots, kinds, watch)).map(Reply)
+    }
+
+    /// Where a robot with legs stands.
+    #[pyo3(signature = (at_m, terrain=None, robot=None, heading_deg=None, height_m=None, up="normal", headings=72))]
+    fn stance(
+        &self,
+        py: Python<'_>,
+        at_m: Vec<f64>,
+        terrain: Option<PathBuf>,
+        robot: Option<PathBuf>,
+        heading_deg: Option<f64>,
+        height_m: Option<f64>,
+        up: &str,
+        headings: u32,
+    ) -> PyResult<Reply> {
+        let found = StandsUp::ALL.into_iter().find(|ways| ways.name() == up);
+        let up = found.ok_or_else(|| errors::input(py, "up", up, "normal or vertical"))?;
+        let asked = StanceAsked { terrain, at_m, robot, heading_deg, height_m, up, headings: counted(py, headings)? };
+        self.ask(py, (None, None), |draft, _| draft.stance(&asked)).map(Reply)
+    }
+
+    /// Slices in all directions from a point.
+    #[pyo3(signature = (from_m, length_m, dem=None, headings=36, memory_max_bytes=None, threads=None, progress=None))]
+    fn fan(
+        &self,
+        py: Python<'_>,
+        from_m: (f64, f64),
+        length_m: f64,
+        dem: Option<PathBuf>,
+        headings: u32,
+        memory_max_bytes: Option<u64>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Reply> {
+        let from_m = MapPoint::new(from_m.0, from_m.1);
+        let asked = FanAsked { dem, from_m, headings, length_m, memory_max_bytes };
+        self.ask(py, (threads, progress), |draft, watch| draft.fan(&asked, watch)).map(Reply)
+    }
+
+    /// Several scenarios side by side.
+    #[staticmethod]
+    #[pyo3(signature = (scenarios, prove_cells=None, threads=None, progress=None))]
+    fn compare(
+        py: Python<'_>,
+        scenarios: Vec<PyRef<'_, Self>>,
+        prove_cells: Option<usize>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Reply> {
+        let drafts: Vec<open::Draft> = scenarios.iter().map(|scenario| scenario.0.clone()).collect();
+        let answer = watched(py, threads, progress.as_ref(), |watch| open::compare(&drafts, proof(prove_cells), watch))?;
+        answer.map(Reply).map_err(|error| errors::raised(py, &error))
+    }
+}
+
+/// The headings of a rose, as many as the command takes.
+fn counted(py: Python<'_>, headings: u32) -> PyResult<u32> {
+    let is_taken = (4..=3600).contains(&headings);
+    if is_taken { Ok(headings) } else { Err(errors::input(py, "headings", headings, "a whole number from 4 to 3600")) }
+}
+
+/// The cone of contacts without a robot.
+#[pyfunction]
+#[pyo3(signature = (file, headings=72))]
+pub(crate) fn stance_of_contacts(py: Python<'_>, file: PathBuf, headings: u32) -> PyResult<Reply> {
+    let headings = counted(py, headings)?;
+    open::stance_of_contacts(&file, headings, &WORDING).map(Reply).map_err(|error| errors::raised(py, &error))
+}
+
+/// A path of a wheeled jumper among boxes. `settings`: `table.key=value`, each.
+#[pyfunction]
+#[pyo3(signature = (
+    file, planner="any-angle", reading="R1", may_jump=true, compare=false, seed=None, nodes=None, random=None, random_sizes_m=vec![],
+    settings=vec![]
+))]
+pub(crate) fn arena(
+    py: Python<'_>,
+    file: PathBuf,
+    planner: &str,
+    reading: &str,
+    may_jump: bool,
+    compare: bool,
+    seed: Option<u64>,
+    nodes: Option<usize>,
+    random: Option<usize>,
+    random_sizes_m: Vec<f64>,
+    settings: Vec<String>,
+) -> PyResult<Reply> {
+    let usual = RrtStarOptions::default();
+    let grown = RrtStarOptions { nodes: nodes.unwrap_or(usual.nodes), seed: seed.unwrap_or(usual.seed), ..usual };
+    if !(2..=1_000_000).contains(&grown.nodes) {
+        return Err(errors::input(py, "nodes", grown.nodes, "a whole number from 2 to 1000000"));
+    }
+    let reading = match reading {
+        "R1" => Reading::R1,
+        "R0" => Reading::R0,
+        other => return Err(errors::input(py, "reading", other, "R1 or R0")),
+    };
+    let planner = match planner {
+        "any-angle" => ArenaPlanner::AnyAngle,
+        "grid" => ArenaPlanner::Grid(reading),
+        "rrt-star" => ArenaPlanner::RrtStar(grown),
+        other => return Err(errors::input(py, "planner", other, "any-angle, grid or rrt-star")),
+    };
+    if random_sizes_m.iter().any(|size_m| !(*size_m > 0.0 && *size_m <= 1e6)) {
+        return Err(errors::input(py, "random_sizes_m", "a length that is not above 0", "sides such as 1, 3, 6"));
+    }
+    if random.is_some_and(|count| count > 300) {
+        return Err(errors::input(py, "random", random.unwrap_or_default(), "at most 300 boxes"));
+    }
+    let boxes = |count| {
+        let usual = RandomBoxes::default();
+        let sizes_m = if random_sizes_m.is_empty() { usual.sizes_m } else { random_sizes_m };
+        (RandomBoxes { count, sizes_m, ..usual }, seed.unwrap_or(1))
+    };
+    let asked = ArenaAsked {
+        file,
+        settings: settings.into_iter().map(|assignment| (format!("set {assignment}"), assignment)).collect(),
+        planner,
+        may_jump,
+        compare: compare.then_some(grown),
+        random: random.map(boxes),
+    };
+    // Nothing in it reports progress: it runs beside the interpreter all the same.
+    let answer = watched(py, None, None, |_| open::arena(&asked, &WORDING))?;
+    answer.map(Reply).map_err(|error| errors::raised(py, &error))
 }

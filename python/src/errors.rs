@@ -4,8 +4,9 @@ use chta::{
     ground::MapError,
     scenario::{Place, ScenarioProblem, ScenarioProblems},
     study::{
-        CaseError, CheckError, FreeRouteError, JourneyError, LegsMapError, LegsRouteError, MeshHopError, MeshRouteError,
-        PipelineError, PlanError, RequireError, SimulateError,
+        ArenaError, CaseError, CheckError, FreeRouteError, JourneyError, LegsMapError, LegsRouteError, MeshHopError,
+        MeshRouteError, PipelineError, PlanError, RequireError, SimulateError, StanceError,
+        fan::FanStudyError,
         map::MapStudyError,
         open::{AskError, OpenError},
     },
@@ -53,6 +54,10 @@ impl Class {
             | AskError::Legs(LegsRouteError::Terrain(_) | LegsRouteError::Mesh(MeshRouteError::Mesh(MeshHopError::Terrain(_)))) => {
                 Self::Terrain
             }
+            AskError::Fan(FanStudyError::TooMuchMemory { .. }) => Self::TooLarge,
+            AskError::Fan(FanStudyError::Dem(error)) => Self::of_pipeline(error),
+            AskError::Stance(StanceError::Terrain(_)) => Self::Terrain,
+            AskError::Arena(ArenaError::Defect(_)) => Self::Other,
             AskError::Legs(LegsRouteError::Pipeline(error)) => Self::of_pipeline(error),
             AskError::Plan(PlanError::Defect(_))
             | AskError::MeshRoute(MeshRouteError::Defect(_) | MeshRouteError::Lost)

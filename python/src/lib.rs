@@ -20,5 +20,7 @@ fn chta_module(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<draft::Draft>()?;
     m.add_class::<draft::Reply>()?;
     m.add_class::<draft::Rasters>()?;
+    m.add_function(wrap_pyfunction!(draft::arena, m)?)?;
+    m.add_function(wrap_pyfunction!(draft::stance_of_contacts, m)?)?;
     Ok(())
 }

@@ -56,6 +56,58 @@ def test_batches_and_folders_change_no_byte(tmp_path: pathlib.Path) -> None:
         chta.campaign.run(listed, SCENARIO, question="hop")
 
 
+def test_keys_and_parts_are_of_the_content_of_files(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "chain.csv").write_text("x_m,z_m\n0,0\n10,1\n20,0\n", encoding="utf-8")
+    tables = {
+        "body": {"name": "moon"},
+        "hopper": {"takeoff_speed_max_m_s": 6.0, "landing_speed_max_m_s": 6.0},
+        "surface": {"friction_coefficient": 0.6},
+        "terrain": {"chain": "chain.csv", "start_x_m": 1.0, "goal_x_m": 19.0},
+    }
+    scenario = chta.Scenario.open(tables, base=tmp_path)
+    listed = [{"hopper.takeoff_speed_max_m_s": 5.0}, {"terrain.chain": "other.csv"}]
+    folder = tmp_path / "parts"
+    first = chta.campaign.run(listed, scenario, folder=folder)
+    assert first.rows[0]["error"] is None and "other.csv" in first.rows[1]["error"]
+    (tmp_path / "other.csv").write_text("x_m,z_m\n0,0\n10,2\n20,0\n", encoding="utf-8")
+    second = chta.campaign.run(listed, scenario, folder=folder)
+    assert second.rows[0] == first.rows[0] and second.rows[1]["error"] is None
+    (tmp_path / "chain.csv").write_text("x_m,z_m\n0,0\n10,1.5\n20,0\n", encoding="utf-8")
+    third = chta.campaign.run(listed, scenario, folder=folder)
+    assert third.rows[0]["key"] != first.rows[0]["key"] and third.rows[0]["document"] != first.rows[0]["document"]
+    assert third.rows[1] == second.rows[1]
+    assert len(list(folder.iterdir())) == 3
+
+
+QUICK = {"uncertainty.policy": "open-loop", "search.risk": "ignored"}
+
+
+def test_trials_in_ranges_are_the_bytes_of_the_single_run(tmp_path: pathlib.Path) -> None:
+    scenario = chta.Scenario.open("data/scenarios/rolling_surely.toml", set=QUICK)
+    asked = {"trials": 110, "seed": 3, "success_min": 0.2}
+    whole = scenario.simulate(**asked)
+    parts = chta.campaign.simulate(scenario, batch=40, folder=tmp_path / "parts", **asked)
+    assert parts.json() == whole.json() and parts.holds == whole.holds
+    times = {part: part.stat().st_mtime_ns for part in (tmp_path / "parts").iterdir()}
+    again = chta.campaign.simulate(scenario, batch=40, folder=tmp_path / "parts", **asked)
+    assert len(times) == 3 and again.json() == whole.json() and times == {part: part.stat().st_mtime_ns for part in times}
+    scenario = scenario.with_keys({"uncertainty.trials": 30})
+    first = scenario.tally(0, 20)
+    with pytest.raises(chta.InputError, match="expected those from 0 to 29"):
+        scenario.merged([first])
+    with pytest.raises(chta.InputError, match="another scenario"):
+        scenario.with_keys({"uncertainty.seed": 9}).merged([first, scenario.tally(20, 10)])
+
+
+def test_trials_over_a_mesh_merge_too() -> None:
+    few = {"search.contacts_max": 60, "uncertainty.policy": "open-loop", "uncertainty.trials": 30}
+    scenario = chta.Scenario.open("data/mesh_scenarios/overhang.toml", set={**few, "uncertainty.takeoff_speed_sigma_fraction": 0.01})
+    tallies = [scenario.tally(first, 15) for first in (15, 0)]
+    whole = scenario.simulate()
+    assert whole.success_rate is not None
+    assert scenario.merged(tallies).json() == whole.json()
+
+
 def test_a_killed_worker_loses_nothing(tmp_path: pathlib.Path) -> None:
     distributed = pytest.importorskip("distributed")
     listed = cases(400)

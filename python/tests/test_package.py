@@ -16,7 +16,7 @@ import chta
 SIMPLE = "data/scenarios/simple.toml"
 
 
-@pytest.mark.parametrize("name", ["chta", "chta._scenario", "chta._arrays", "chta.campaign"])
+@pytest.mark.parametrize("name", ["chta", "chta._scenario", "chta._arrays", "chta.campaign", "chta.xarray"])
 def test_examples_of_docstrings(name: str) -> None:
     failed, tried = doctest.testmod(importlib.import_module(name), optionflags=doctest.ELLIPSIS)
     assert failed == 0 and tried > 0
@@ -148,5 +148,10 @@ def test_extras_are_used_where_they_are() -> None:
     assert data["hops"].shape == found.hops.shape and float(data.x[1] - data.x[0]) == pytest.approx(32.0)
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
-    for answer in (plan, found):
+    jumps = chta.arena("data/arenas/sumo_2.toml", planner="grid")
+    for answer in (plan, found, jumps):
         assert answer.plot().has_data()
+    rays = chta.Scenario.open("data/scenarios/mars_crater_field.toml").fan((100, 80), 10, headings=4)
+    assert list(rays.to_frame()["heading_deg"]) == [0, 90, 180, 270]
+    both = chta.compare(["data/scenarios/simple.toml", "data/scenarios/simple_reduced.toml"]).to_frame()
+    assert list(both["hops"]) == [1, 5]

@@ -7,7 +7,7 @@ use chta::{
     report::{CompareAnswer, CompareRow},
     study::{
         CaseRecord, Compared, Comparison, MeshRouteQuestion, MeshRouted, PlanOptions, Planned, TravelOptions, TravelPlanned,
-        mesh_route, plan, travel_plan,
+        comparison_document, mesh_route, plan, travel_plan,
     },
 };
 
@@ -16,10 +16,7 @@ use super::{
     args::{CommonArgs, CompareArgs},
     effects::Purpose,
     interrupt,
-    load::{
-        EndOptions, Loaded, MeshPlanInput, comparison_document, drives, is_over_mesh, load_mesh_scenario, load_scenario,
-        relative_name,
-    },
+    load::{EndOptions, Loaded, MeshPlanInput, drives, is_over_mesh, load_mesh_scenario, load_scenario, relative_name},
     not_for_travel, not_on_mesh, output,
     progress::Progress,
     wrong_thing::Role,
@@ -62,7 +59,7 @@ impl AnyComparison {
                 comparison.compared.iter().flat_map(Compared::<TravelPlanned>::warnings).collect(),
             ),
         };
-        comparison_document(&records, warnings, self.answer())
+        Ok(comparison_document(&records, warnings, self.answer())?)
     }
 
     /// The picture with all paths overlaid.

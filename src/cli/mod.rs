@@ -26,6 +26,7 @@ mod pictures;
 mod progress;
 mod run_folder;
 mod sites_input;
+mod tallies;
 mod threads;
 mod trajectory;
 mod unanswered;

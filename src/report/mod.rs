@@ -31,6 +31,8 @@ mod objective_record;
 mod outage_record;
 #[cfg(feature = "plot")]
 mod page;
+#[cfg(feature = "parquet")]
+mod parquet_table;
 mod path_record;
 mod plan_answer;
 mod proof_record;
@@ -104,6 +106,8 @@ pub use objective_record::{AmountRecord, BudgetRecord, ObjectiveRecord};
 pub use outage_record::OutageRecord;
 #[cfg(feature = "plot")]
 pub use page::{PageDocument, PageFacets, PageGround, PageLayer, PagePosts, ProfileCut, ProfilePiece, page_html, page_template};
+#[cfg(feature = "parquet")]
+pub use parquet_table::{CellKind, TableColumn, TextTable, read_parquet, write_parquet};
 pub use path_record::{
     AimRecord, EnergyBasis, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv,
 };

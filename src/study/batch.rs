@@ -3,6 +3,8 @@
 use std::{
     collections::BTreeSet,
     fmt::Write as _,
+    fs::File,
+    io::Read,
     path::{Path, PathBuf},
 };
 
@@ -21,8 +23,10 @@ use crate::{
 pub struct CaseTable {
     /// The name of its file, with which problems of a case begin.
     name: String,
+    /// What its rows are counted by: lines or rows.
+    place: &'static str,
     columns: Vec<String>,
-    /// The line of each case, and its cells.
+    /// The line or row of each case, and its cells.
     rows: Vec<(u64, Vec<String>)>,
 }
 
@@ -56,6 +60,20 @@ pub enum CaseTableError {
         /// The column.
         column: String,
     },
+    /// Parquet that cannot be read.
+    #[error("{}: {problem}, expected Parquet whose columns are scenario keys, such as hopper.takeoff_speed_max_m_s", file.display())]
+    Parquet {
+        /// The file.
+        file: PathBuf,
+        /// The problem.
+        problem: std::io::Error,
+    },
+    /// Parquet in a build without it.
+    #[error("{}: this is Parquet, which this build of chta does not read: give the cases as CSV, or build it with the feature parquet", file.display())]
+    NoParquet {
+        /// The file.
+        file: PathBuf,
+    },
     /// A header alone.
     #[error("{}: found no case, expected a row for each below the header", file.display())]
     Empty {
@@ -64,15 +82,43 @@ pub enum CaseTableError {
     },
 }
 
+/// The names of the columns, and of each case its line or row and its cells.
+type Cases = (Vec<String>, Vec<(u64, Vec<String>)>);
+
+fn csv_cases(file: &Path) -> Result<Cases, CaseTableError> {
+    let failed = |problem| CaseTableError::Csv { file: file.to_path_buf(), problem };
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_path(file).map_err(failed)?;
+    let columns = reader.headers().map_err(failed)?.iter().map(str::to_owned).collect();
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(failed)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        rows.push((line, record.iter().map(str::to_owned).collect()));
+    }
+    Ok((columns, rows))
+}
+
+#[cfg(feature = "parquet")]
+fn parquet_cases(file: &Path) -> Result<Cases, CaseTableError> {
+    let failed = |problem| CaseTableError::Parquet { file: file.to_path_buf(), problem };
+    let (columns, rows) = crate::report::read_parquet(File::open(file).map_err(failed)?).map_err(failed)?;
+    Ok((columns, (1..).zip(rows).collect()))
+}
+
+#[cfg(not(feature = "parquet"))]
+fn parquet_cases(file: &Path) -> Result<Cases, CaseTableError> {
+    Err(CaseTableError::NoParquet { file: file.to_path_buf() })
+}
+
 impl CaseTable {
-    /// Reads a table (CSV).
+    /// Reads a table: CSV, or Parquet by its first bytes.
     ///
     /// # Errors
     /// [`CaseTableError`].
     pub fn read(file: &Path) -> Result<Self, CaseTableError> {
-        let failed = |problem| CaseTableError::Csv { file: file.to_path_buf(), problem };
-        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_path(file).map_err(failed)?;
-        let columns: Vec<String> = reader.headers().map_err(failed)?.iter().map(str::to_owned).collect();
+        let mut beginning = [0; 4];
+        let is_parquet = File::open(file).and_then(|mut opened| opened.read_exact(&mut beginning)).is_ok() && beginning == *b"PAR1";
+        let (columns, rows) = if is_parquet { parquet_cases(file)? } else { csv_cases(file)? };
         let mut known = BTreeSet::new();
         for column in &columns {
             let (table, name) = column.split_once('.').unwrap_or(("", column));
@@ -84,16 +130,11 @@ impl CaseTable {
                 return Err(CaseTableError::Twice { file: file.to_path_buf(), column: column.clone() });
             }
         }
-        let mut rows = Vec::new();
-        for record in reader.records() {
-            let record = record.map_err(failed)?;
-            let line = record.position().map_or(0, csv::Position::line);
-            rows.push((line, record.iter().map(str::to_owned).collect()));
-        }
         if rows.is_empty() {
             return Err(CaseTableError::Empty { file: file.to_path_buf() });
         }
-        Ok(Self { name: file.display().to_string(), columns, rows })
+        let place = if is_parquet { "row" } else { "line" };
+        Ok(Self { name: file.display().to_string(), place, columns, rows })
     }
 
     /// How many cases there are.
@@ -105,11 +146,45 @@ impl CaseTable {
     fn drafted(&self, draft: &Draft, case: usize) -> Draft {
         let mut draft = draft.clone();
         let (line, cells) = &self.rows[case];
-        let place = format!("{}, line {line}", self.name);
+        let place = format!("{}, {} {line}", self.name, self.place);
         for (column, cell) in self.columns.iter().zip(cells).filter(|(_, cell)| !cell.is_empty()) {
             draft.entries.set(&place, &format!("{column}={cell}"));
         }
         draft
+    }
+
+    /// The columns of rows as Parquet has them: numbers where a key takes a number and every case gives one, else text.
+    #[cfg(feature = "parquet")]
+    pub fn parquet_columns(&self) -> Vec<crate::report::TableColumn> {
+        use crate::{report::CellKind, scenario::Kind};
+        let given = |name: &str| {
+            let place = self.columns.iter().position(|column| column == name)?;
+            let key = name.split_once('.').and_then(|(table, name)| Key::find(table, name))?;
+            let mut cells = self.rows.iter().map(|(_, cells)| &cells[place]).filter(|cell| !cell.is_empty());
+            Some(match key.kind {
+                Kind::Number { .. } if cells.all(|cell| cell.parse::<f64>().is_ok()) => CellKind::Number,
+                Kind::Count { .. } if cells.all(|cell| cell.parse::<i64>().is_ok()) => CellKind::Count,
+                _ => CellKind::Text,
+            })
+        };
+        let kind = |name: &str| match name {
+            "case" | "hops" | "hops_lower_bound" => CellKind::Count,
+            "key" | "verdict" | "error" => CellKind::Text,
+            name => given(name).unwrap_or(CellKind::Number),
+        };
+        self.row_columns().into_iter().map(|name| crate::report::TableColumn { kind: kind(&name), name }).collect()
+    }
+
+    /// What a table of rows says of itself: the version, and the meaning of every column with its unit.
+    pub fn words(&self) -> Vec<(String, String)> {
+        let version = ("chta_version".to_owned(), env!("CARGO_PKG_VERSION").to_owned());
+        let of_row = [("case", "number of the case in its table, from 0"), ("key", KEY)];
+        let of_row = of_row.into_iter().chain(ANSWERS).map(|(name, meaning)| (name.to_owned(), meaning.to_owned()));
+        let keys = self.columns.iter().filter_map(|column| {
+            let (table, name) = column.split_once('.')?;
+            Some((column.clone(), Key::find(table, name)?.help.to_owned()))
+        });
+        std::iter::once(version).chain(of_row).chain(keys).collect()
     }
 
     /// The names of the columns of rows: those of the cases between their number and key, and the answers.
@@ -118,6 +193,9 @@ impl CaseTable {
         ["case", "key"].into_iter().map(str::to_owned).chain(self.columns.iter().cloned()).chain(answers).collect()
     }
 }
+
+/// What the key of a row is.
+const KEY: &str = "SHA-256 of the scenario as used, of its files and of the version; empty where the scenario is refused";
 
 /// The columns of answers, with what they mean and their units.
 pub const ANSWERS: [(&str, &str); 10] = [
@@ -143,25 +221,37 @@ pub struct BatchRow {
 }
 
 impl CaseTable {
-    /// The name of a case among answers: the SHA-256 of the scenario as used and of the version; empty where the scenario is refused.
-    /// Files count by their names.
+    /// The name of a case among answers: the SHA-256 of the scenario as used, of the content of its files and of the version; empty where the
+    /// scenario is refused or a file cannot be read.
     pub fn key(&self, draft: &Draft, case: usize) -> String {
         let draft = self.drafted(draft, case);
-        draft.validated(true).map_or_else(
-            |_| String::new(),
-            |scenario| {
-                let document = scenario_document(&scenario, &|path| relative_name(&draft.base.join(path)));
-                let digest = Sha256::digest(format!("{} {document}", env!("CARGO_PKG_VERSION")));
-                digest.iter().fold(String::with_capacity(64), |mut text, byte| {
-                    // Writing to a String cannot fail.
-                    let _ = write!(text, "{byte:02x}");
-                    text
-                })
-            },
-        )
+        let named = |path: &Path| relative_name(&draft.base.join(path));
+        let Ok(scenario) = draft.validated(true) else { return String::new() };
+        let shared = draft.shared.clone().unwrap_or_default();
+        let Ok(files) = shared.checksums(&scenario, &draft.base, &relative_name) else { return String::new() };
+        let mut text = format!("{} {}", env!("CARGO_PKG_VERSION"), scenario_document(&scenario, &named));
+        for file in files {
+            // Writing to a String cannot fail.
+            let _ = write!(text, " {}", file.sha256);
+        }
+        Sha256::digest(text).iter().fold(String::with_capacity(64), |mut text, byte| {
+            let _ = write!(text, "{byte:02x}");
+            text
+        })
     }
 
-    /// Plans some cases, all threads together. The rows do not depend on which cases are asked for at once, nor on the threads.
+    /// The cells of a case as they were given, in the order of the columns.
+    pub fn given(&self, case: usize) -> &[String] {
+        &self.rows[case].1
+    }
+
+    /// The keys that are columns.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// Plans some cases, all threads together. The rows do not depend on which cases are asked for at once, nor on the threads. Cases of a draft
+    /// that [shares](super::open::SharedInputs) its inputs read a terrain once for all.
     ///
     /// Of cases that `progress` cancels the rows say so as an error: a caller that cancels drops them.
     pub fn answers(&self, draft: &Draft, cases: &[usize], progress: &dyn Progress) -> Vec<BatchRow> {

@@ -10,10 +10,10 @@ use super::{
     pipeline::planned_over, scenario_files, with_measured_errors,
 };
 use crate::{
-    chain::Station,
+    chain::{PolygonalChain, Station},
     ground::DemGround,
     hop::HopTest,
-    report::{CrsRecord, MapKnowledge},
+    report::{CrsRecord, InputFile, MapKnowledge},
     scenario::{Scenario, TerrainSource, scenario_document},
     world::Hopper,
 };
@@ -142,9 +142,25 @@ impl Case {
     /// [`CaseError::NoTerrain`] and [`CaseError::Prepare`].
     pub fn new(scenario: Scenario, base: &Path, commands: Commands) -> Result<Self, CaseError> {
         let terrain = scenario.terrain.as_ref().ok_or(CaseError::NoTerrain)?;
+        let survey = Self::survey(&scenario, terrain, base, commands)?;
+        Self::surveyed(&survey, scenario, base, commands)
+    }
+
+    /// The terrain of such a case, read.
+    pub(super) fn survey(
+        scenario: &Scenario,
+        terrain: &TerrainSource,
+        base: &Path,
+        commands: Commands,
+    ) -> Result<Survey, CaseError> {
+        let hopper = commands.hopper(&scenario.hopper);
+        Ok(Survey::of(&Scenario { hopper, ..scenario.clone() }, terrain, base)?)
+    }
+
+    /// The case over its terrain, which may have been read for another one, with the ground beside the line where hops leave it.
+    pub(super) fn surveyed(survey: &Survey, scenario: Scenario, base: &Path, commands: Commands) -> Result<Self, CaseError> {
         let hopper = commands.hopper(&scenario.hopper);
         let whole = Scenario { hopper, ..scenario.clone() };
-        let survey = Survey::of(&whole, terrain, base)?;
         if scenario.derating.is_none() {
             let mut prepared = survey.prepare_with_ground(&whole)?;
             let (scenario, of_errors) = with_measured_errors(scenario, base)?;
@@ -161,13 +177,29 @@ impl Case {
                 ground,
             });
         }
-        let mut case = Self::over(&survey, scenario, base, commands)?;
+        let mut case = Self::over(survey, scenario, base, commands)?;
         case.prepared.beside_line = survey.beside_line(&whole)?;
         let beside_line = case.prepared.beside_line.as_deref().map(|ground| Arc::new(planned_over(ground, &whole)));
         if let Some(prepared) = &mut case.derated {
             prepared.beside_line = beside_line;
         }
         Ok(case)
+    }
+
+    /// A case along a chain that is no file, of a scenario without terrain. Without ends of its own it goes from one end of the chain to
+    /// the other. Its [record](Self::record) cannot be made, since its terrain has no name.
+    ///
+    /// # Errors
+    /// [`CaseError::Prepare`].
+    pub fn along(chain: PolygonalChain, scenario: Scenario, base: &Path) -> Result<Self, CaseError> {
+        let (first_m, last_m) = chain.extent_m();
+        let scenario = Scenario {
+            terrain: Some(TerrainSource::Chain { path: PathBuf::new() }),
+            start_x_m: scenario.start_x_m.or(Some(first_m)),
+            goal_x_m: scenario.goal_x_m.or(Some(last_m)),
+            ..scenario
+        };
+        Self::over(&Survey::along(chain), scenario, base, Commands::OfTheMachine)
     }
 
     /// The same over terrain that was read before.
@@ -281,11 +313,16 @@ impl Case {
     /// # Errors
     /// [`PipelineError::Read`].
     pub fn record(&self, name: &dyn Fn(&Path) -> String) -> Result<CaseRecord, PipelineError> {
-        Ok(CaseRecord {
+        Ok(self.recorded(super::checksums(&scenario_files(&self.scenario, &self.base), name)?, name))
+    }
+
+    /// The same with the checksums of its files.
+    pub(super) fn recorded(&self, inputs: Vec<InputFile>, name: &dyn Fn(&Path) -> String) -> CaseRecord {
+        CaseRecord {
             scenario: scenario_document(&self.scenario, &|path| name(&self.base.join(path))),
-            inputs: super::checksums(&scenario_files(&self.scenario, &self.base), name)?,
+            inputs,
             warnings: self.prepared.warnings.clone(),
             crs: self.prepared.projection.as_ref().map(CrsRecord::from),
-        })
+        }
     }
 }

@@ -1,8 +1,13 @@
 //! How reliably a free route over a mesh is flown.
 
+use std::ops::Range;
+
 #[cfg(feature = "plot")]
 use super::simulate::trials_picture;
-use super::{MeshRouted, SimulateOptions, TrialGround, simulate::by_policy};
+use super::{
+    MeshRouted, PartsProblem, SimulateOptions, TrialGround,
+    simulate::{by_policy, merged},
+};
 #[cfg(feature = "plot")]
 use crate::figure::{FigureError, Picture};
 use crate::{
@@ -34,6 +39,9 @@ pub enum MeshTrialsError {
     /// The trials.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// Tallies that are not those of the run.
+    #[error(transparent)]
+    Parts(#[from] PartsProblem),
 }
 
 /// The trials of a plan over a mesh, with everything that their views need.
@@ -75,10 +83,7 @@ pub fn simulate_over_mesh(
     observer: &mut dyn Observer,
     progress: &dyn Progress,
 ) -> Result<MeshSimulated, MeshTrialsError> {
-    let radius_m = routed.ground.radius_m();
-    if radius_m > 0.0 {
-        return Err(MeshTrialsError::Ball { radius_m });
-    }
+    refuse_ball(&routed)?;
     let keys = scenario.uncertainty.clone().unwrap_or_default();
     let policies = if options.compare { Policy::ALL.to_vec() } else { vec![keys.policy] };
     let mut warnings = routed.warnings.clone();
@@ -90,13 +95,73 @@ pub fn simulate_over_mesh(
         let trials = TrialOptions { first_trial, until_half_width, ..keys.options() };
         (summaries, tallies) = by_policy(&simulation, &policies, (trials, tally), observer, progress)?;
     }
+    Ok(answered(routed, keys.policy, options, (summaries, tallies), warnings))
+}
+
+/// Flies the trials of a range of numbers over a mesh, as a tally that merges with those of other ranges.
+///
+/// # Returns
+/// `None` without a path to fly.
+///
+/// # Errors
+/// [`MeshTrialsError`].
+pub fn tally_over_mesh(
+    routed: &MeshRouted,
+    scenario: &Scenario,
+    numbers: Range<u64>,
+    progress: &dyn Progress,
+) -> Result<Option<Tally>, MeshTrialsError> {
+    refuse_ball(routed)?;
+    let keys = scenario.uncertainty.clone().unwrap_or_default();
+    let Some(mission) = routed.mission(scenario)? else { return Ok(None) };
+    let trials = numbers.end.saturating_sub(numbers.start);
+    let options = TrialOptions { first_trial: numbers.start, trials, policy: keys.policy, ..keys.options() };
+    let simulation = Simulation::new(&mission, keys.errors.clone())?;
+    Ok(Some(simulation.tally(&options, &mut (), progress)?))
+}
+
+/// The answer of trials over a mesh that were flown in parts, by their tallies, as [`Trials::merged`](super::Trials::merged) gives it.
+///
+/// # Errors
+/// [`MeshTrialsError::Parts`] for tallies of another run, and for trials that are missing or counted twice.
+pub fn merged_over_mesh(
+    routed: MeshRouted,
+    scenario: &Scenario,
+    options: &SimulateOptions,
+    tallies: &[Tally],
+    progress: &dyn Progress,
+) -> Result<MeshSimulated, MeshTrialsError> {
+    let keys = scenario.uncertainty.clone().unwrap_or_default();
+    let first = options.first_trial;
+    let Some(own) = tally_over_mesh(&routed, scenario, first..first + 1, progress)? else {
+        return Err(PartsProblem::NoPath.into());
+    };
+    let tally = merged(tallies, &own, (first, keys.options().trials))?;
+    let mut warnings = routed.warnings.clone();
+    warnings.extend(scenario.trial_warnings(&[keys.policy], &trial_ground(&routed, scenario)));
+    Ok(answered(routed, keys.policy, options, (vec![tally.summary()], vec![tally]), warnings))
+}
+
+fn refuse_ball(routed: &MeshRouted) -> Result<(), MeshTrialsError> {
+    let radius_m = routed.ground.radius_m();
+    if radius_m > 0.0 { Err(MeshTrialsError::Ball { radius_m }) } else { Ok(()) }
+}
+
+/// The answer of trials under some policies, of which that of the scenario counts.
+fn answered(
+    routed: MeshRouted,
+    own: Policy,
+    options: &SimulateOptions,
+    (summaries, tallies): (Vec<Summary>, Vec<Tally>),
+    warnings: Vec<String>,
+) -> MeshSimulated {
     let hops = routed.path.as_ref().map_or(0, |path| path.hops.len());
     let records: Vec<_> = summaries.iter().map(|summary| SimulationRecord::new(summary, hops)).collect();
-    let simulation = records.iter().find(|record| record.policy == keys.policy).cloned();
+    let simulation = records.iter().find(|record| record.policy == own).cloned();
     let compare = if records.len() > 1 { records } else { Vec::new() };
     let requirement = options.success_min.map(|success_min| SuccessRequirement::of(success_min, simulation.as_ref()));
     let answer = MeshSimulateAnswer { plan: routed.answer.clone(), simulation, compare, requirement };
-    Ok(MeshSimulated { routed, summaries, tallies, answer, warnings })
+    MeshSimulated { routed, summaries, tallies, answer, warnings }
 }
 
 /// What the warnings about trials need to know of the mesh.

@@ -124,7 +124,7 @@ pub use mesh_hop::{MeshHopError, MeshHopQuestion, MeshHopped, mesh_hop};
 pub use mesh_reach::{MeshReachQuestion, MeshReached, mesh_reach};
 pub use mesh_read_back::{MeshChecked, MeshReadBackError, MeshResultPath, check_over_mesh};
 pub use mesh_route::{MeshRouteError, MeshRouteQuestion, MeshRouted, mesh_route};
-pub use mesh_trials::{MeshSimulated, MeshTrialsError, simulate_over_mesh};
+pub use mesh_trials::{MeshSimulated, MeshTrialsError, merged_over_mesh, simulate_over_mesh, tally_over_mesh};
 pub use on_body::{OfBody, dem_on_body, on_body};
 #[cfg(feature = "plot")]
 pub use page::{DocumentInPage, PageDocuments, PageError, page_ground, page_ground_over_facets};
@@ -132,11 +132,11 @@ pub use physics::{Extent, Extremes, TooLarge, constant_gravity_warnings};
 pub use pipeline::{DemReading, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, friction, prepare, sha256_of};
 pub use plan::{Defect, PlanError, PlanOptions, Planned, plan};
 pub use read_back::ReadBackError;
-pub use record::{CaseRecord, checksums, raster_files, scenario_files};
+pub use record::{CaseRecord, checksums, comparison_document, raster_files, scenario_files};
 pub use require::{RangeProblem, RequireError, Required, Requirement, require};
 pub use schema::SchemaKind;
 pub use sense::TrialGround;
-pub use simulate::{SimulateError, SimulateOptions, Simulated, Trials, simulate};
+pub use simulate::{PartsProblem, SimulateError, SimulateOptions, Simulated, Trials, simulate};
 pub use sites::{Candidates, SitesQuestion, SitesStudy, sites};
 pub use stance::{ContactsError, StanceError, StanceQuestion, StanceTerrain, Stood, contacts_of, stand};
 #[cfg(feature = "plot")]

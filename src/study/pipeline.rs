@@ -234,6 +234,11 @@ impl Survey {
         Ok(Self { ground, projection: transect.projection, warnings })
     }
 
+    /// A chain that is no file.
+    pub(super) const fn along(chain: PolygonalChain) -> Self {
+        Self { ground: Surveyed::Chain(chain), projection: None, warnings: Vec::new() }
+    }
+
     /// The chain under another scenario's hopper, grip, rest slope and ends. That scenario's terrain keys and files are ignored, and the
     /// ground beside the line is not read: what varies a key answers for exact commands.
     ///

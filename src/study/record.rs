@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{Overlays, PipelineError, sha256_of};
 use crate::{
-    report::{CrsRecord, Document, DocumentKind, InputFile},
+    report::{CompareAnswer, CrsRecord, Document, DocumentKind, InputFile},
     scenario::{Scenario, TerrainSource},
     terrain::sidecar_files,
 };
@@ -67,4 +67,23 @@ pub fn raster_files(path: &Path) -> Vec<PathBuf> {
 /// [`PipelineError::Read`].
 pub fn checksums(files: &[PathBuf], name: &dyn Fn(&Path) -> String) -> Result<Vec<InputFile>, PipelineError> {
     files.iter().map(|file| Ok(InputFile { name: name(file), sha256: sha256_of(file)? })).collect()
+}
+
+/// The document of scenarios side by side: their records, the warnings, the table. Files that several have are listed once.
+///
+/// # Errors
+/// An error of the serialiser; plain data causes none.
+pub fn comparison_document(
+    records: &[&CaseRecord],
+    warnings: Vec<String>,
+    answer: &CompareAnswer,
+) -> Result<String, serde_json::Error> {
+    let scenarios = records.iter().map(|record| record.scenario.clone()).collect();
+    let mut inputs: Vec<InputFile> = Vec::new();
+    for input in records.iter().flat_map(|record| &record.inputs) {
+        if !inputs.contains(input) {
+            inputs.push(input.clone());
+        }
+    }
+    Document::new(DocumentKind::Compare, serde_json::Value::Array(scenarios), inputs, warnings, answer).to_json()
 }

@@ -52,6 +52,9 @@ const ON_MESHES: [&str; 2] = ["--roadmap", "--roadmap-output"];
 /// Of missions that drive, tested in `travel.rs`.
 const ON_WHEELS: [&str; 1] = ["--alternatives"];
 
+/// What needs the files of other runs, or a build with Parquet, tested in `trials_parts.rs` and `batch.rs`.
+const ON_PARTS: [&str; 2] = ["--merge", "--parts"];
+
 /// The mark of missing data, tested in `missing_data.rs`.
 const ON_MISSING_DATA: [&str; 1] = ["--no-data"];
 
@@ -1553,7 +1556,7 @@ fn every_option_changes_the_output() {
     for (command, trials) in all {
         let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
         let elsewhere = |option: &str| {
-            [&ON_A_PROJECTED_MAP[..], &ON_THE_TIME_ALONE, &ON_LARGE_INPUTS, &ON_MESHES, &ON_WHEELS, &ON_MISSING_DATA]
+            [&ON_A_PROJECTED_MAP[..], &ON_THE_TIME_ALONE, &ON_LARGE_INPUTS, &ON_MESHES, &ON_WHEELS, &ON_PARTS, &ON_MISSING_DATA]
                 .concat()
                 .contains(&option)
         };

@@ -147,6 +147,37 @@ fn halves_merge_to_the_whole() {
     }
 }
 
+#[test]
+fn merged_parts_are_the_bytes_of_the_single_run() {
+    let desk = desk();
+    let part = |scenario: &str, name: &str, first: &str, trials: &str| {
+        let ran = desk.run(&["simulate", scenario, "--first-trial", first, "--trials", trials, "--tally", name]);
+        assert!(ran.status < 2, "{}", ran.stderr);
+    };
+    for scenario in ["chain.toml", "dem.toml"] {
+        part(scenario, "a.json", "0", "300");
+        part(scenario, "b.json", "300", "100");
+        part(scenario, "c.json", "400", "500");
+        let json = ["simulate", scenario, "--format", "json", "--success-min", "0.5"];
+        let whole = desk.run(&json);
+        // In any order, whatever the number of trials that the scenario of a part stated.
+        let merged = desk.run(&[&json[..], &["--merge", "c.json", "a.json", "b.json", "--tally", "all.json"]].concat());
+        assert_eq!((merged.status, &merged.stdout), (whole.status, &whole.stdout), "{scenario}: {}", merged.stderr);
+        assert_eq!(desk.run(&["simulate", scenario, "--tally", "whole.json"]).status, whole.status);
+        assert!(desk.read("all.json") == desk.read("whole.json"), "{scenario}");
+        let refused = |words: &[&str], said: &str| {
+            let ran = desk.run(&[&["simulate", scenario, "--merge"], words].concat());
+            assert!(ran.status == 2 && ran.stderr.contains(said), "{words:?}: {}", ran.stderr);
+        };
+        refused(&["a.json", "c.json"], "the trials 0 to 299, 400 to 899, expected those from 0 to 899");
+        refused(&["a.json", "b.json", "c.json", "b.json"], "both tallies have the trials from 300 to 399");
+        refused(&["a.json", "b.json", "c.json", "--seed", "5"], "another scenario");
+        refused(&["a.json", "b.json", "c.json", "--set", "hopper.clearance_m=0.2"], "another scenario");
+        refused(&["scenario.toml"], "this is no tally");
+        refused(&["a.json", "--compare"], "--compare");
+    }
+}
+
 /// Open loop the first hop's command is that of the plan, and what was drawn is what differs from it.
 #[test]
 fn the_draws_beside_a_landing_are_its_errors() {

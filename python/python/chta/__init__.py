@@ -14,7 +14,10 @@ from ._answers import (
     NOT_SEARCHED,
     UNREACHED,
     Answer,
+    Arena,
     Check,
+    Comparison,
+    Fan,
     Grid,
     Hop,
     Map,
@@ -23,13 +26,14 @@ from ._answers import (
     Run,
     Simulation,
     Sites,
+    Stance,
     Trade,
 )
 from ._arrays import LIMITS, Chain, Dem, TakeoffSet, hop_map, mobility
 from ._chta import VERSION as __version__
 from ._errors import Cancelled, ChtaError, InputError, Problem, ScenarioError, TerrainError, TooLarge
 from ._machine import Body, Hopper, Surface
-from ._scenario import Progress, Scenario, run
+from ._scenario import Progress, Scenario, arena, compare, run, stance_of_contacts
 
 __all__ = [
     "LIMITS",
@@ -37,12 +41,15 @@ __all__ = [
     "NO_GROUND",
     "UNREACHED",
     "Answer",
+    "Arena",
     "Body",
     "Cancelled",
     "Chain",
     "Check",
     "ChtaError",
+    "Comparison",
     "Dem",
+    "Fan",
     "Grid",
     "Hop",
     "Hopper",
@@ -57,14 +64,18 @@ __all__ = [
     "ScenarioError",
     "Simulation",
     "Sites",
+    "Stance",
     "Surface",
     "TakeoffSet",
     "TerrainError",
     "TooLarge",
     "Trade",
     "__version__",
+    "arena",
     "campaign",
+    "compare",
     "hop_map",
     "mobility",
     "run",
+    "stance_of_contacts",
 ]

@@ -265,6 +265,86 @@ class Trade(Answer):
         return pd.json_normalize(self.rows)
 
 
+class Stance(Answer):
+    """Where a robot with legs stands, and which way it may jump from there."""
+
+    @property
+    def stands(self) -> bool:
+        """Whether it can stand there: enough feet on the ground, no part inside it, and a cone of take-off directions."""
+        return self._holds
+
+    @property
+    def rose(self) -> list[dict[str, Any]]:
+        """For every heading the take-off angles that each kind of cone allows."""
+        return list(self.document()["rose"])
+
+    def to_frame(self) -> pandas.DataFrame:
+        """The rose as a table (extra ``pandas``)."""
+        import pandas as pd
+
+        return pd.json_normalize(self.rose)
+
+
+class Arena(Answer):
+    """A path of a wheeled jumper among boxes."""
+
+    @property
+    def path_time_s(self) -> float | None:
+        """The time of the path; ``None`` without one."""
+        time = self.document()["path_time_s"]
+        return None if time is None else float(time)
+
+    @property
+    def points(self) -> list[dict[str, Any]]:
+        """The points of the path, and how each is reached."""
+        return list(self.document()["path"])
+
+    def plot(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.axes.Axes:
+        """Draws the boxes and the path, seen from above (extra ``plot``)."""
+        axes = _axes(ax)
+        for box in self.document()["scenario"]["box"]:
+            centre, size = np.array(box["centre_m"]), np.array(box["size_m"])
+            outline = centre + size / 2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+            axes.fill(outline[:, 0], outline[:, 1], color="#bbbbbb")
+        axes.plot([point["x_m"] for point in self.points], [point["y_m"] for point in self.points], color="#0072B2")
+        axes.set_aspect("equal")
+        axes.set_xlabel("x (m)")
+        axes.set_ylabel("y (m)")
+        return axes
+
+
+class Fan(Answer):
+    """How far in how few hops in all directions from one point."""
+
+    @property
+    def rays(self) -> list[dict[str, Any]]:
+        """One for each heading, as the document has them."""
+        return list(self.document()["rays"])
+
+    def to_frame(self) -> pandas.DataFrame:
+        """One row for each heading, without its bands (extra ``pandas``)."""
+        import pandas as pd
+
+        rows = [{key: value for key, value in ray.items() if not isinstance(value, list)} for ray in self.rays]
+        table: pandas.DataFrame = pd.DataFrame(rows)
+        return table
+
+
+class Comparison(Answer):
+    """Several scenarios side by side."""
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """One for each scenario, as the document has them."""
+        return list(self.document()["compared"])
+
+    def to_frame(self) -> pandas.DataFrame:
+        """The same as a table (extra ``pandas``)."""
+        import pandas as pd
+
+        return pd.json_normalize(self.rows)
+
+
 class Sites(Answer):
     """Landing sites ranked."""
 

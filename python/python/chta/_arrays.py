@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _chta
-from ._answers import Grid, Transform
+from ._answers import Grid, Plan, Transform
 from ._errors import InputError
 from ._machine import BodyLike, HopperLike, SurfaceLike, tables
 from ._scenario import XY, Progress
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 LIMITS: tuple[str, ...] = tuple(_chta.LIMITS)
 """The limits by their codes in `TakeoffSet.limit`."""
+
+
+Machine = tuple[HopperLike, SurfaceLike, BodyLike]
 
 
 class TakeoffSet(NamedTuple):
@@ -46,8 +49,10 @@ def _vector(values: ArrayLike | None, kind: Any = np.float64) -> NDArray[Any] | 
 class Chain:
     """A chain of straight segments under the limits of a hopper."""
 
-    def __init__(self, inner: _chta.Chain, x_m: NDArray[np.float64], z_m: NDArray[np.float64]) -> None:
-        self._inner, self.x_m, self.z_m = inner, x_m, z_m
+    def __init__(
+        self, inner: _chta.Chain, x_m: NDArray[np.float64], z_m: NDArray[np.float64], machine: Machine
+    ) -> None:
+        self._inner, self.x_m, self.z_m, self._machine = inner, x_m, z_m, machine
 
     @classmethod
     def from_arrays(
@@ -84,7 +89,7 @@ class Chain:
             _vector(friction_coefficient),
             _vector(keep_out, np.bool_),
         )
-        return cls(inner, x, z)
+        return cls(inner, x, z, (hopper, surface, body))
 
     def takeoff_set(self, from_x_m: ArrayLike, to_x_m: ArrayLike, *, threads: int | None = None) -> TakeoffSet:
         """The feasible take-off angles of a hop between each pair of positions, which broadcast."""
@@ -97,6 +102,43 @@ class Chain:
         """One hop, limit by limit, with the keys of ``chta hop --format json``."""
         answer: dict[str, Any] = json.loads(self._inner.hop(float(from_x_m), float(to_x_m)))
         return answer
+
+    def plan(
+        self,
+        start_x_m: float | None = None,
+        goal_x_m: float | None = None,
+        *,
+        points_per_segment: int | str | None = None,
+        node_spacing_max_m: float | None = None,
+        effort: str | None = None,
+        takeoff_angle: str | None = None,
+        prove: bool = False,
+        prove_cells_max: int = 0,
+        verify: bool = False,
+        search: Mapping[str, Any] | None = None,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> Plan:
+        """The path of fewest hops between two positions; without them, from one end of the chain to the other. ``search`` takes any other
+        key of ``[search]``.
+
+        >>> import numpy as np, chta
+        >>> flat = chta.Chain.from_arrays(
+        ...     np.arange(0, 41, 4), np.zeros(11), body="moon", hopper=chta.Hopper(4, 4), surface=chta.Surface(0.6))
+        >>> flat.plan(0, 40).hop_count
+        5
+        """
+        keys: dict[str, Any] = dict(search or {})
+        named = {
+            "points_per_segment": points_per_segment,
+            "node_spacing_max_m": node_spacing_max_m,
+            "effort": effort,
+            "takeoff_angle": takeoff_angle,
+        }
+        keys.update({name: value for name, value in named.items() if value is not None})
+        cells = prove_cells_max if prove else None
+        machine = tables(*self._machine, keys)
+        return Plan(self._inner.plan(machine, start_x_m, goal_x_m, cells, verify, threads, progress))
 
 
 class Dem:
@@ -116,11 +158,19 @@ class Dem:
         return cls(_chta.Dem.open(os.fspath(path)))
 
     @classmethod
-    def from_array(cls, z_m: ArrayLike, transform: Sequence[float], *, nodata: float | None = None) -> Dem:
+    def from_array(
+        cls, z_m: ArrayLike, transform: Sequence[float], *, crs: Any = None, nodata: float | None = None
+    ) -> Dem:
         """From an array ``(rows, columns)`` and the transform of rasterio: ``(dx, 0, left, 0, -dy, top)``.
 
-        Masked posts, NaN and ``nodata`` have no elevation. 32-bit arrays are kept as such. The map is a local one: no reference system is
-        known, and distances are taken as true.
+        Masked posts, NaN and ``nodata`` have no elevation. 32-bit arrays are kept as such. ``crs`` is a code, a PROJ string, well-known
+        text, or an object of pyproj or rasterio; with the extra ``crs`` it is whatever pyproj knows, if it is a map in metres. Without one
+        the map is a local one, and distances are taken as true.
+
+        >>> import numpy as np, chta
+        >>> south = chta.Dem.from_array(np.zeros((9, 9)), (20, 0, 0, 0, -20, 180), crs="IAU_2015:30135")
+        >>> "1737400" in south.crs_wkt
+        True
         """
         given = np.asanyarray(z_m)
         if given.ndim != 2:
@@ -135,7 +185,7 @@ class Dem:
         if len(numbers) != 6:
             raise InputError(f"transform has {len(numbers)} numbers, expected six")
         make = _chta.Dem.of_single if single else _chta.Dem.of_double
-        return cls(make(rows, cols, np.ravel(array), numbers))
+        return cls(make(rows, cols, np.ravel(array), numbers, None if crs is None else stated(crs)))
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -233,6 +283,33 @@ def hop_map(dem: Dem | ArrayLike, starts_m: XY | Iterable[XY], transform: Sequen
 def mobility(dem: Dem | ArrayLike, transform: Sequence[float] | None = None, **machine: Any) -> Grid:
     """`Dem.mobility` of a raster or of an array with its transform."""
     return _dem(dem, transform).mobility(**machine)
+
+
+def stated(crs: Any) -> list[str]:
+    """A reference system in the texts that state it, the first of which is tried first: as given, and as pyproj has it."""
+    if isinstance(crs, str):
+        texts = [crs]
+    elif isinstance(crs, int):
+        texts = [f"EPSG:{crs}"]
+    elif hasattr(crs, "to_wkt"):
+        texts = [str(crs.to_wkt())]
+    else:
+        texts = []
+    try:
+        import pyproj
+    except ImportError:
+        if not texts:
+            raise InputError(f"crs is {crs!r}, expected a code, a PROJ string or well-known text without pyproj (extra crs)") from None
+        return texts
+    try:
+        known = pyproj.CRS.from_user_input(crs)
+    except pyproj.exceptions.CRSError as error:
+        if not texts:
+            raise InputError(f"crs is {crs!r}, expected what pyproj knows: {error}") from None
+        return texts
+    authority = known.to_authority()
+    texts += [":".join(authority)] if authority else []
+    return texts + [known.to_wkt("WKT2_2019"), known.to_wkt("WKT1_GDAL", pretty=False) or ""]
 
 
 def _dem(dem: Dem | ArrayLike, transform: Sequence[float] | None) -> Dem:

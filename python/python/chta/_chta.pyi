@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 _F = NDArray[np.float64]
 _Progress = Callable[[str, int, int | None], bool | None]
 
-__all__ = ["LIMITS", "VERSION", "Chain", "Dem", "Draft", "Reply", "Rasters"]
+__all__ = ["LIMITS", "VERSION", "Chain", "Dem", "Draft", "Reply", "Rasters", "arena", "stance_of_contacts"]
 
 LIMITS: list[str]
 VERSION: str
@@ -51,15 +51,27 @@ class Chain:
     ) -> Chain: ...
     def takeoff_set(self, from_x_m: _F, to_x_m: _F, threads: int | None = None) -> tuple[_F, _F, NDArray[np.int8]]: ...
     def hop(self, from_x_m: float, to_x_m: float) -> str: ...
+    def plan(
+        self,
+        machine: str,
+        start_x_m: float | None = None,
+        goal_x_m: float | None = None,
+        prove_cells: int | None = None,
+        verify: bool = False,
+        threads: int | None = None,
+        progress: _Progress | None = None,
+    ) -> Reply: ...
 
 @final
 class Dem:
     @staticmethod
     def open(path: str | os.PathLike[str]) -> Dem: ...
     @staticmethod
-    def of_double(rows: int, cols: int, z_m: _F, transform: Sequence[float]) -> Dem: ...
+    def of_double(rows: int, cols: int, z_m: _F, transform: Sequence[float], crs: Sequence[str] | None = None) -> Dem: ...
     @staticmethod
-    def of_single(rows: int, cols: int, z_m: NDArray[np.float32], transform: Sequence[float]) -> Dem: ...
+    def of_single(
+        rows: int, cols: int, z_m: NDArray[np.float32], transform: Sequence[float], crs: Sequence[str] | None = None
+    ) -> Dem: ...
     @property
     def shape(self) -> tuple[int, int]: ...
     @property
@@ -113,6 +125,18 @@ class Draft:
         threads: int | None = None,
         progress: _Progress | None = None,
     ) -> Reply: ...
+    def tally(
+        self, first_trial: int, trials: int, threads: int | None = None, progress: _Progress | None = None
+    ) -> str | None: ...
+    def merged(
+        self,
+        tallies: Sequence[str],
+        success_min: float | None = None,
+        threads: int | None = None,
+        progress: _Progress | None = None,
+    ) -> Reply: ...
+    def sharing(self) -> Draft: ...
+    def checksums(self) -> list[str]: ...
     def run(self, threads: int | None = None, progress: _Progress | None = None) -> tuple[Reply, Reply | None]: ...
     def hop(self, from_m: Sequence[float] | None = None, to_m: Sequence[float] | None = None) -> Reply: ...
     def map(
@@ -157,3 +181,47 @@ class Draft:
     def trade(
         self, vary: Sequence[str], prove_cells: int | None = None, threads: int | None = None, progress: _Progress | None = None
     ) -> Reply: ...
+    def trade_legs(
+        self, robots: Sequence[str], cones: Sequence[str], threads: int | None = None, progress: _Progress | None = None
+    ) -> Reply: ...
+    def stance(
+        self,
+        at_m: Sequence[float],
+        terrain: str | os.PathLike[str] | None = None,
+        robot: str | os.PathLike[str] | None = None,
+        heading_deg: float | None = None,
+        height_m: float | None = None,
+        up: str = "normal",
+        headings: int = 72,
+    ) -> Reply: ...
+    def fan(
+        self,
+        from_m: tuple[float, float],
+        length_m: float,
+        dem: str | os.PathLike[str] | None = None,
+        headings: int = 36,
+        memory_max_bytes: int | None = None,
+        threads: int | None = None,
+        progress: _Progress | None = None,
+    ) -> Reply: ...
+    @staticmethod
+    def compare(
+        scenarios: Sequence[Draft],
+        prove_cells: int | None = None,
+        threads: int | None = None,
+        progress: _Progress | None = None,
+    ) -> Reply: ...
+
+def stance_of_contacts(file: str | os.PathLike[str], headings: int = 72) -> Reply: ...
+def arena(
+    file: str | os.PathLike[str],
+    planner: str = "any-angle",
+    reading: str = "R1",
+    may_jump: bool = True,
+    compare: bool = False,
+    seed: int | None = None,
+    nodes: int | None = None,
+    random: int | None = None,
+    random_sizes_m: Sequence[float] = ...,
+    settings: Sequence[str] = ...,
+) -> Reply: ...

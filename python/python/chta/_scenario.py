@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Optional, Union
 
 from . import _chta
-from ._answers import Check, Hop, Map, Plan, Require, Run, Simulation, Sites, Trade
+from ._answers import Arena, Check, Comparison, Fan, Hop, Map, Plan, Require, Run, Simulation, Sites, Stance, Trade
 from ._errors import InputError
 
 Progress = Callable[[str, int, Optional[int]], Optional[bool]]
@@ -148,6 +148,49 @@ class Scenario:
         draft = self._draft.with_keys(_settings(given)) if given else self._draft
         return Simulation(draft.simulate(compare, until_half_width, first_trial, success_min, threads, progress))
 
+    def tally(
+        self, first_trial: int, trials: int, *, threads: int | None = None, progress: Progress | None = None
+    ) -> str | None:
+        """Flies the trials of a range of numbers: their tally (JSON), which `merged` takes; ``None`` without a path to fly."""
+        return self._draft.tally(first_trial, trials, threads, progress)
+
+    def merged(
+        self,
+        tallies: Iterable[str],
+        *,
+        trials: int | None = None,
+        seed: int | None = None,
+        policy: str | None = None,
+        success_min: float | None = None,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> Simulation:
+        """The answer of trials that were flown in parts by `tally`, with the bytes of `simulate` at once.
+
+        >>> import chta
+        >>> quick = {"uncertainty.trials": 60, "uncertainty.policy": "open-loop", "search.risk": "ignored"}
+        >>> scenario = chta.Scenario.open("data/scenarios/rolling_surely.toml", set=quick)
+        >>> parts = [scenario.tally(first, 20) for first in (40, 0, 20)]
+        >>> scenario.merged(parts).json() == scenario.simulate().json()
+        True
+        """
+        keys = {"trials": trials, "seed": seed, "policy": policy}
+        given = {f"uncertainty.{key}": value for key, value in keys.items() if value is not None}
+        draft = self._draft.with_keys(_settings(given)) if given else self._draft
+        return Simulation(draft.merged(list(tallies), success_min, threads, progress))
+
+    def _varied(self, keys: Mapping[str, Any]) -> Scenario:
+        """As `with_keys`, without reading the file again: for one of many cases. Keys of this scenario's own need the whole way."""
+        if not keys or any(key in self._keys for key in keys):
+            return self.with_keys(keys)
+        draft = self._draft.with_keys(_settings(keys))
+        draft.validated()
+        return Scenario(draft, self._source, {**self._keys, **keys})
+
+    def _sharing(self) -> Scenario:
+        """The same, whose variants read their terrain together."""
+        return Scenario(self._draft.sharing(), self._source, self._keys)
+
     def run(self, *, threads: int | None = None, progress: Progress | None = None) -> Run:
         """Everything that the scenario asks for: its path, flown again by a check of its own, and trials where it has errors."""
         plan, trials = self._draft.run(threads, progress)
@@ -255,7 +298,7 @@ class Scenario:
 
     def trade(
         self,
-        vary: Mapping[str, tuple[float, float, int]],
+        vary: Mapping[str, tuple[float, float, int] | Sequence[str]],
         *,
         prove: bool = False,
         prove_cells_max: int = 0,
@@ -263,9 +306,107 @@ class Scenario:
         progress: Progress | None = None,
     ) -> Trade:
         """The fewest hops, or no path, for every value of one or two keys: ``{"hopper.takeoff_speed_max_m_s": (2, 6, 9)}`` is nine
-        values from 2 to 6."""
+        values from 2 to 6.
+
+        Of a robot with legs robots and kinds of cones are compared: ``{"robot.cone": ["kc", "exact"], "robot.file": [...]}``."""
+        if any(key in ("robot.cone", "robot.file") for key in vary):
+            others = [key for key in vary if key not in ("robot.cone", "robot.file")]
+            if others or prove:
+                found = others[0] if others else "a proof"
+                raise InputError(f"found {found} beside robots and cones, expected robot.cone and robot.file alone")
+            robots, cones = ([str(one) for one in vary.get(key, ())] for key in ("robot.file", "robot.cone"))
+            return Trade(self._draft.trade_legs(robots, cones, threads, progress))
         swept = [f"{key}={start!r}:{stop!r}:{steps}" for key, (start, stop, steps) in vary.items()]
         return Trade(self._draft.trade(swept, prove_cells_max if prove else None, threads, progress))
+
+    def stance(
+        self,
+        at_m: Sequence[float],
+        *,
+        terrain: str | os.PathLike[str] | None = None,
+        robot: str | os.PathLike[str] | None = None,
+        heading_deg: float | None = None,
+        height_m: float | None = None,
+        up: str = "normal",
+        headings: int = 72,
+    ) -> Stance:
+        """Where a robot with legs stands at a place, and which way it may jump from there: on the terrain and with the robot of the
+        scenario, or on others.
+
+        >>> import chta
+        >>> legs = chta.Scenario.open("data/mesh_scenarios/three_legs.toml")
+        >>> stood = legs.stance((0, 0, 1), heading_deg=30, height_m=0.3)
+        >>> stood.kind, len(stood["rose"])
+        ('stance', 72)
+        """
+        place, file = (None if path is None else os.fspath(path) for path in (terrain, robot))
+        return Stance(self._draft.stance([float(value) for value in at_m], place, file, heading_deg, height_m, up, headings))
+
+    def fan(
+        self,
+        from_m: XY,
+        length_m: float,
+        *,
+        dem: str | os.PathLike[str] | None = None,
+        headings: int = 36,
+        memory_max_mib: int | None = None,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> Fan:
+        """How far in how few hops in all directions from a point of the scenario's DEM, or of another one."""
+        bytes_max = None if memory_max_mib is None else memory_max_mib << 20
+        place = None if dem is None else os.fspath(dem)
+        x, y = from_m
+        return Fan(self._draft.fan((float(x), float(y)), float(length_m), place, headings, bytes_max, threads, progress))
+
+
+def compare(
+    scenarios: Iterable[Source],
+    *,
+    set: Mapping[str, Any] | None = None,
+    prove: bool = False,
+    prove_cells_max: int = 0,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Comparison:
+    """Plans for every scenario and shows the answers side by side; ``set`` replaces keys of all of them.
+
+    >>> import chta
+    >>> both = chta.compare(["data/scenarios/simple.toml", "data/scenarios/simple_reduced.toml"])
+    >>> [row["hops"] for row in both.rows]
+    [1, 5]
+    """
+    drafts = [scenario_of(source, set)._draft for source in scenarios]
+    return Comparison(_chta.Draft.compare(drafts, prove_cells_max if prove else None, threads, progress))
+
+
+def stance_of_contacts(file: str | os.PathLike[str], *, headings: int = 72) -> Stance:
+    """The cone of take-off directions that contacts without a robot allow: a table ``normal_x,normal_y,normal_z,friction_coefficient``."""
+    return Stance(_chta.stance_of_contacts(os.fspath(file), headings))
+
+
+def arena(
+    file: str | os.PathLike[str],
+    *,
+    planner: str = "any-angle",
+    reading: str = "R1",
+    may_jump: bool = True,
+    compare: bool = False,
+    seed: int | None = None,
+    nodes: int | None = None,
+    random: int | None = None,
+    random_sizes_m: Sequence[float] = (),
+    set: Mapping[str, Any] | None = None,
+) -> Arena:
+    """Plans for a wheeled robot that jumps, on a flat floor with boxes.
+
+    >>> import chta
+    >>> round(chta.arena("data/arenas/sumo_1.toml", planner="grid").path_time_s, 4)
+    11.9092
+    """
+    settings = [f"{key}={json.dumps(value)}" for key, value in (set or {}).items()]
+    answer = _chta.arena(os.fspath(file), planner, reading, may_jump, compare, seed, nodes, random, list(random_sizes_m), settings)
+    return Arena(answer)
 
 
 def scenario_of(source: Source, keys: Mapping[str, Any] | None = None) -> Scenario:

@@ -18,6 +18,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ._chta import VERSION
+from ._answers import Simulation
 from ._errors import ChtaError, InputError
 from ._scenario import Scenario, Source, scenario_of
 
@@ -56,20 +57,21 @@ class Campaign:
 
 
 def key_of(scenario: Scenario, question: str) -> str:
-    """The name of a case in parts: the SHA-256 of the scenario as used, of the question and of the version."""
-    text = json.dumps([VERSION, question, scenario.tables()], sort_keys=True)
+    """The name of a case in parts: the SHA-256 of the scenario as used, of the content of its files, of the question and of the version."""
+    text = json.dumps([VERSION, question, scenario.tables(), scenario._draft.checksums()], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def answers(scenario: Scenario, cases: Sequence[Mapping[str, Any]], first: int, question: str, threads: int | None) -> list[Row]:
-    """The rows of some cases, of which the first has this number: one task of a cluster."""
+    """The rows of some cases, of which the first has this number: one task of a cluster. Terrain that they have in common is read once."""
+    scenario = scenario._sharing()
     return [_answer(scenario, case, first + number, question, threads) for number, case in enumerate(cases)]
 
 
 def _answer(scenario: Scenario, case: Mapping[str, Any], number: int, question: str, threads: int | None) -> Row:
     row: Row = {"case": number, "key": None, "holds": None, "hops": None, "error": None, "document": None}
     try:
-        varied = scenario.with_keys(case)
+        varied = scenario._varied(case)
         row["key"] = key_of(varied, question)
         answer = getattr(varied, question)(threads=threads)
     except ChtaError as error:
@@ -123,6 +125,83 @@ def run(
     return Campaign(listed, [row for first in sorted(rows) for row in rows[first]])
 
 
+def simulate(
+    scenario: Source,
+    client: distributed.Client | None = None,
+    *,
+    trials: int | None = None,
+    seed: int | None = None,
+    policy: str | None = None,
+    success_min: float | None = None,
+    batch: int = 1000,
+    folder: str | os.PathLike[str] | None = None,
+    threads: int | None = 1,
+) -> Simulation:
+    """Trials of one scenario in ranges of ``batch`` trials, here or on the workers of a client of Dask: the draws of a trial depend on the
+    seed and its number alone, so that the answer has the bytes of `Scenario.simulate` at once. Every range plans the path anew.
+
+    With a ``folder``, the tally of each range is written there whole, and ranges that are there are not flown again.
+
+    >>> import chta
+    >>> quick = {"uncertainty.policy": "open-loop", "search.risk": "ignored"}
+    >>> scenario = chta.Scenario.open("data/scenarios/rolling_surely.toml", set=quick)
+    >>> chta.campaign.simulate(scenario, trials=50, batch=20).json() == scenario.simulate(trials=50).json()
+    True
+    """
+    if batch < 1:
+        raise InputError(f"batch is {batch}, expected a whole number of at least 1")
+    keys = {"trials": trials, "seed": seed, "policy": policy}
+    opened = scenario_of(scenario, {f"uncertainty.{key}": value for key, value in keys.items() if value is not None})
+    errors = opened.tables().get("uncertainty")
+    if errors is None:
+        return opened.simulate(success_min=success_min, threads=threads)
+    count = int(errors["trials"])
+    store = None if folder is None else _Store(pathlib.Path(folder))
+    content = _content(opened)
+    tallies: dict[int, str] = {}
+    wanted: list[tuple[int, int, str]] = []
+    for first in range(0, count, batch):
+        text = json.dumps([VERSION, "tally", first, min(batch, count - first), opened.tables(), content], sort_keys=True)
+        name = hashlib.sha256(text.encode()).hexdigest()[:32]
+        kept = None if store is None else store.read(name)
+        if kept is None:
+            wanted.append((first, min(batch, count - first), name))
+        else:
+            tallies[first] = kept[0]["tally"]
+    for first, name, tally in _flown(opened, wanted, client, threads):
+        if tally is None:
+            # Without a path nothing is flown, and the answer says so.
+            return opened.simulate(success_min=success_min, threads=threads)
+        tallies[first] = tally
+        if store is not None:
+            store.write(name, [{"tally": tally}])
+    return opened.merged([tallies[first] for first in sorted(tallies)], success_min=success_min, threads=threads)
+
+
+def _tally(scenario: Scenario, first: int, trials: int, threads: int | None) -> str | None:
+    """One task of a cluster."""
+    return scenario.tally(first, trials, threads=threads)
+
+
+def _flown(
+    scenario: Scenario, wanted: list[tuple[int, int, str]], client: distributed.Client | None, threads: int | None
+) -> Iterator[tuple[int, str, str | None]]:
+    """The ranges as they are flown."""
+    if client is None:
+        for first, trials, name in wanted:
+            yield first, name, _tally(scenario, first, trials, threads)
+        return
+    from distributed import as_completed
+
+    of_task = {}
+    for first, trials, name in wanted:
+        task = client.submit(_tally, scenario, first, trials, threads, key=f"chta-{name}", retries=10, pure=True)
+        of_task[task] = (first, name)
+    for task in as_completed(list(of_task)):
+        first, name = of_task.pop(task)
+        yield first, name, task.result()
+
+
 def _done(
     scenario: Scenario,
     wanted: list[tuple[int, Sequence[Mapping[str, Any]], str]],
@@ -159,8 +238,23 @@ def _plain(value: Any) -> Any:
 
 def _name(scenario: Scenario, part: Sequence[Mapping[str, Any]], first: int, question: str) -> str:
     """The name of a batch: its cases decide it, not where it is computed."""
-    text = json.dumps([VERSION, question, first, scenario.tables(), list(part)], sort_keys=True, default=_plain)
+    named = [scenario.tables(), _content(scenario), [[case, _content(scenario, case)] for case in part]]
+    text = json.dumps([VERSION, question, first, named], sort_keys=True, default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+FILES = ("robot.file", "terrain.dem", "terrain.mesh", "terrain.chain", "surface.friction_raster", "surface.keep_out", "surface.keep_in")
+"""The keys that name files, of which a case sets some; and the errors and the rasters of layers."""
+
+
+def _content(scenario: Scenario, case: Mapping[str, Any] | None = None) -> list[str] | None:
+    """The checksums of the files of a scenario, or of a case that names files of its own; ``None`` where they cannot be read."""
+    if case is not None and not any(key in FILES or key == "uncertainty.errors" or key.endswith(".raster") for key in case):
+        return None
+    try:
+        return (scenario if case is None else scenario.with_keys(case))._draft.checksums()
+    except ChtaError:
+        return None
 
 
 class _Store:

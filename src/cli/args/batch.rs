@@ -1,8 +1,8 @@
 //! The options of the command that answers many cases.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::Args as ClapArgs;
+use clap::{Args as ClapArgs, ValueEnum};
 
 use super::{DEFAULT_MAX_GIB, max_gib, thread_count};
 
@@ -13,7 +13,7 @@ use super::{DEFAULT_MAX_GIB, max_gib, thread_count};
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta batch data/cases/speeds.csv --scenario data/scenarios/simple_reduced.toml -o parts")]
 pub(crate) struct BatchArgs {
-    /// Cases (CSV): one row a case, columns are scenario keys; an empty cell leaves the key as the scenario has it
+    /// Cases (CSV or Parquet): one row a case, columns are scenario keys; an empty cell leaves the key as the scenario has it
     #[arg(value_name = "CASES")]
     pub(crate) cases: PathBuf,
     /// Scenario (TOML) whose keys the cases set
@@ -22,10 +22,13 @@ pub(crate) struct BatchArgs {
     /// Folder for the parts, created if it does not exist
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
-    /// Go on where an earlier batch in this folder ended: a row whose scenario is the same is kept
+    /// The format of the parts; Parquet needs a chta built with it
+    #[arg(long, value_enum, default_value = "csv")]
+    pub(crate) parts: TableFile,
+    /// Go on where an earlier batch in this folder ended: a row whose scenario and files are the same is kept
     #[arg(long)]
     pub(crate) resume: bool,
-    /// All rows in the order of the cases as one table (CSV) to write [default: none]
+    /// All rows in the order of the cases as one table (CSV, or Parquet by its ending .parquet) to write [default: none]
     #[arg(long, value_name = "FILE")]
     pub(crate) collect: Option<PathBuf>,
     /// Set any scenario key; overrides the scenario [example: `--set hopper.takeoff_speed_max_m_s=8`]
@@ -37,4 +40,27 @@ pub(crate) struct BatchArgs {
     /// Most GiB read from a pipe, and from a text or mesh that is read whole
     #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
     pub(crate) input_max_gib: f64,
+}
+
+/// The format of a table of rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TableFile {
+    Csv,
+    Parquet,
+}
+
+impl TableFile {
+    /// That of a file, by its ending.
+    pub(crate) fn of(file: &Path) -> Self {
+        let is_parquet = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"));
+        if is_parquet { Self::Parquet } else { Self::Csv }
+    }
+
+    /// The ending of its files.
+    pub(crate) const fn ending(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Parquet => "parquet",
+        }
+    }
 }

@@ -275,6 +275,15 @@ pub(crate) struct SimulateArgs {
     /// Tally of the trials (JSON) to write, which the library merges with those of other ranges [default: none]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["experiment", "compare"])]
     pub(crate) tally: Option<PathBuf>,
+    /// Tallies (JSON) of ranges that were flown apart with --first-trial, --trials and --tally, in place of flying: together all trials
+    /// of the run, whose answer is written as if they had been flown at once [default: none]
+    #[arg(
+        long, value_name = "FILE", num_args = 1..,
+        conflicts_with_all = [
+            "experiment", "compare", "until_half_width", "output", "plot", "plot_map", "density", "trajectory", "plan_anew"
+        ]
+    )]
+    pub(crate) merge: Vec<PathBuf>,
     /// Experiment to run instead: worst-drift (the paper's), cone-width (the paper's claim), sensitivity (what each error
     /// costs) [default: none]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["compare", "until_half_width"])]

@@ -22,7 +22,7 @@ use super::{
 };
 
 pub(crate) use arena::ArenaArgs;
-pub(crate) use batch::BatchArgs;
+pub(crate) use batch::{BatchArgs, TableFile};
 pub(crate) use journeys::{
     CheckArgs, CompareArgs, HopArgs, PlanArgs, ReportArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
 };

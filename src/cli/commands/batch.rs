@@ -1,11 +1,14 @@
 //! `chta batch`: many cases of one scenario.
 
-use chta::study::{BatchRow, CaseTable};
+use chta::study::{
+    BatchRow, CaseTable,
+    open::{Draft, SharedInputs},
+};
 
 use crate::cli::{
     Answer, Failure,
-    args::BatchArgs,
-    batch_folder::BatchFolder,
+    args::{BatchArgs, TableFile},
+    batch_folder::{BatchFolder, check_format},
     inputs, interrupt,
     load::load_draft,
     output::{self, Pending},
@@ -19,11 +22,14 @@ pub(crate) fn run(args: &BatchArgs) -> Result<Answer, Failure> {
     let files = [(Some(args.cases.as_path()), Role::Cases), (Some(args.scenario.as_path()), Role::ScenarioOption)];
     inputs::look_at(args.input_max_gib, &files)?;
     threads::start(args.threads)?;
-    let draft = load_draft(&args.scenario, &args.set)?;
+    let draft = Draft { shared: Some(SharedInputs::default()), ..load_draft(&args.scenario, &args.set)? };
     let cases = CaseTable::read(&inputs::open(&args.cases, Role::Cases)?.file).map_err(|error| Failure::of(&error))?;
-    let (mut folder, mut rows) = BatchFolder::open(&args.output, &cases, args.resume)?;
+    if let Some(file) = &args.collect {
+        check_format(&format!("--collect {}", file.display()), TableFile::of(file))?;
+    }
+    let (mut folder, rows) = BatchFolder::open(&args.output, &cases, args.parts, args.resume)?;
     let collected = args.collect.as_deref().map(Pending::begin).transpose()?;
-    rows.retain(|case, row| *case < cases.count() && !row[1].is_empty() && row[1] == cases.key(&draft, *case));
+    let mut rows = folder.kept(rows, |case| cases.key(&draft, case));
     let kept = rows.len();
     let wanted: Vec<usize> = (0..cases.count()).filter(|case| !rows.contains_key(case)).collect();
     let progress = Progress::new(false);

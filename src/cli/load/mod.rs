@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use chta::{
     chain::{Station, csv::read_chain_csv_file},
-    report::{CompareAnswer, Document, DocumentKind, InputFile},
+    report::{DocumentKind, InputFile},
     scenario::{Entries, FileKind, LackingKey, Scenario, ScenarioProblems, TerrainSource},
     study::{
         Case, CaseError, CaseRecord, PipelineError, checksums,
@@ -346,23 +346,6 @@ fn validate_and_prepare(
     let opened = OpenCase::new(case, purpose, [given, &entries], &WORDING)?;
     output::warn_all(quiet, &opened.case.prepared.warnings);
     Ok(stated(opened, ends))
-}
-
-/// Several scenarios side by side as one document, with all of them as used.
-pub(crate) fn comparison_document(
-    records: &[&CaseRecord],
-    warnings: Vec<String>,
-    answer: &CompareAnswer,
-) -> Result<String, Failure> {
-    let scenarios = records.iter().map(|record| record.scenario.clone()).collect();
-    let mut inputs: Vec<InputFile> = Vec::new();
-    for input in records.iter().flat_map(|record| &record.inputs) {
-        if !inputs.contains(input) {
-            inputs.push(input.clone());
-        }
-    }
-    let document = Document::new(DocumentKind::Compare, serde_json::Value::Array(scenarios), inputs, warnings, answer);
-    Ok(document.to_json()?)
 }
 
 /// The failure for a terrain without a usable chain, with the file or option at fault.

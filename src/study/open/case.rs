@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Purpose, Wording};
+use super::{Purpose, SharedInputs, Wording};
 use crate::{
     report::DocumentKind,
     scenario::Entries,
@@ -24,10 +24,22 @@ impl OpenCase {
     ///
     /// # Errors
     /// [`PipelineError::Read`], if a file is gone.
-    pub fn new(mut case: Case, purpose: Purpose, [given, typed]: [&Entries; 2], wording: &Wording) -> Result<Self, PipelineError> {
+    pub fn new(case: Case, purpose: Purpose, keys: [&Entries; 2], wording: &Wording) -> Result<Self, PipelineError> {
+        Self::sharing(case, purpose, keys, wording, &SharedInputs::default())
+    }
+
+    /// The same with checksums of files that other cases may have read.
+    pub(super) fn sharing(
+        mut case: Case,
+        purpose: Purpose,
+        [given, typed]: [&Entries; 2],
+        wording: &Wording,
+        shared: &SharedInputs,
+    ) -> Result<Self, PipelineError> {
         let unused = purpose.unused(given, &case.scenario, wording);
         case.prepared.warnings.extend(unused.into_iter().chain(Purpose::replaced(typed)));
-        Ok(Self { record: case.record(&wording.file_name)?, case })
+        let inputs = shared.checksums(&case.scenario, &case.base, &wording.file_name)?;
+        Ok(Self { record: case.recorded(inputs, &wording.file_name), case })
     }
 
     /// An answer as one document, with its warnings.

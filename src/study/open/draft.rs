@@ -8,7 +8,7 @@ use std::{
 
 use serde_json::Value;
 
-use super::{CHAIN_TERRAIN, OpenCase, OpenError, Purpose, SLICED_TERRAIN, relative_name};
+use super::{CHAIN_TERRAIN, OpenCase, OpenError, Purpose, SLICED_TERRAIN, SharedInputs, relative_name};
 use crate::{
     scenario::{Entries, FileKind, Place, Scenario, ScenarioProblem, ScenarioProblems},
     study::Case,
@@ -47,6 +47,8 @@ pub struct Draft {
     pub result: Option<Value>,
     /// The caller's words.
     pub wording: Wording,
+    /// What it reads together with other cases; absent: it reads everything by itself.
+    pub shared: Option<SharedInputs>,
 }
 
 impl Draft {
@@ -161,8 +163,13 @@ impl Draft {
     /// # Errors
     /// [`OpenError`].
     pub fn case(&self, purpose: Purpose) -> Result<OpenCase, OpenError> {
-        let case = Case::new(self.validated(purpose.stands_on_legs())?, &self.base, purpose.commands())?;
-        Ok(OpenCase::new(case, purpose, [&self.entries; 2], &self.wording)?)
+        let (scenario, commands) = (self.validated(purpose.stands_on_legs())?, purpose.commands());
+        let Some(shared) = &self.shared else {
+            let case = Case::new(scenario, &self.base, commands)?;
+            return Ok(OpenCase::new(case, purpose, [&self.entries; 2], &self.wording)?);
+        };
+        let case = shared.case(scenario, &self.base, commands)?;
+        Ok(OpenCase::sharing(case, purpose, [&self.entries; 2], &self.wording, shared)?)
     }
 }
 
@@ -170,7 +177,7 @@ impl Draft {
 const CHECK_PATH: &str = "check the path and its permissions";
 
 /// The text of a file.
-fn read_bounded(file: &Path, name: &str) -> Result<String, OpenError> {
+pub(super) fn read_bounded(file: &Path, name: &str) -> Result<String, OpenError> {
     let unread = |reason: String, help| OpenError::unreadable(name, reason, help);
     let open = File::open(file).and_then(|opened| Ok((opened.metadata()?.len(), opened)));
     let (size, opened) = open.map_err(|error| unread(error.to_string(), CHECK_PATH))?;

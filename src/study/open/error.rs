@@ -3,9 +3,9 @@
 use crate::{
     scenario::{LackingKey, RobotFileError, ScenarioProblems},
     study::{
-        CaseError, CheckError, FrontProblem, HopError, JourneyError, LegsMapError, LegsRouteError, LegsTrialsError, MeshHopError,
-        MeshReadBackError, MeshRouteError, MeshTrialsError, PipelineError, PlanError, ReadBackError, RequireError, SimulateError,
-        TradeError, map::MapStudyError,
+        ArenaError, CaseError, CheckError, ContactsError, FrontProblem, HopError, JourneyError, LegsMapError, LegsRouteError,
+        LegsTrialsError, MeshHopError, MeshReadBackError, MeshRouteError, MeshTrialsError, PipelineError, PlanError, ReadBackError,
+        RequireError, SimulateError, StanceError, TradeError, fan::FanStudyError, map::MapStudyError,
     },
 };
 
@@ -141,6 +141,18 @@ pub enum AskError {
     /// Trials of a robot with legs.
     #[error(transparent)]
     LegsTrials(#[from] LegsTrialsError),
+    /// A stance.
+    #[error(transparent)]
+    Stance(#[from] StanceError),
+    /// A table of contacts.
+    #[error(transparent)]
+    Contacts(#[from] ContactsError),
+    /// A path among boxes.
+    #[error(transparent)]
+    Arena(#[from] ArenaError),
+    /// Slices in all directions.
+    #[error(transparent)]
+    Fan(#[from] FanStudyError),
     /// A robot file.
     #[error(transparent)]
     Robot(#[from] RobotFileError),

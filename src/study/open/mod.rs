@@ -27,9 +27,13 @@ mod map;
 mod names;
 mod purpose;
 mod reply;
+mod shared;
 mod vary;
 
-pub use ask::{HopAsked, MapAsked, MapReply, PlanAsked, Ran, SitesAsked};
+pub use ask::{
+    ArenaAsked, ChainAsked, FanAsked, HopAsked, MapAsked, MapReply, PlanAsked, Ran, SitesAsked, StanceAsked, arena, compare,
+    stance_of_contacts,
+};
 pub use case::OpenCase;
 pub use draft::{Draft, Wording};
 pub use error::{AskError, OpenError};
@@ -38,6 +42,7 @@ pub use map::OpenMap;
 pub use names::relative_name;
 pub use purpose::{Purpose, ScenarioEnds};
 pub use reply::Reply;
+pub use shared::SharedInputs;
 pub use vary::OpenVariation;
 
 /// The keys of a terrain that is sliced.

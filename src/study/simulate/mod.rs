@@ -2,6 +2,7 @@
 
 mod advice;
 mod flyer;
+mod parts;
 #[cfg(feature = "plot")]
 mod pictures;
 
@@ -13,6 +14,8 @@ use std::{
 
 use advice::advice;
 pub(super) use flyer::Flyer;
+pub use parts::PartsProblem;
+pub(super) use parts::merged;
 #[cfg(feature = "plot")]
 pub(super) use pictures::trials_picture;
 
@@ -71,6 +74,9 @@ pub enum SimulateError {
     /// The trials.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// Tallies that are not those of the run.
+    #[error(transparent)]
+    Parts(#[from] PartsProblem),
 }
 
 impl From<Cancelled> for SimulateError {
@@ -209,6 +215,21 @@ impl Trials {
             ..self.options
         };
         Ok(Some(simulation.tally(&options, &mut (), progress)?))
+    }
+
+    /// The answer of trials that were flown in parts, by their tallies: the bytes of the answer of the whole. One trial is flown, to know
+    /// the tallies for those of this plan; there are no trajectories.
+    ///
+    /// # Errors
+    /// [`SimulateError::Parts`] for tallies of another run, and for trials that are missing or counted twice.
+    pub fn merged(self, tallies: &[Tally], progress: &dyn Progress) -> Result<Simulated, SimulateError> {
+        let Some(own) = self.tally(self.options.first_trial..self.options.first_trial + 1, progress)? else {
+            return Err(PartsProblem::NoPath.into());
+        };
+        let tally = merged(tallies, &own, (self.options.first_trial, self.options.trials))?;
+        let answer = self.answer_of(&tally);
+        let Self { planned, warnings, .. } = self;
+        Ok(Simulated { planned, summaries: vec![tally.summary()], tallies: vec![tally], answer, warnings, ground: None })
     }
 
     /// The answer of trials that were flown in parts and merged.

@@ -24,6 +24,7 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
         ("--plot-map", args.plot_map.is_some(), "draws landings of a point on a map"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
         ("--tally", args.tally.is_some(), "writes the landings of a point"),
+        ("--merge", !args.merge.is_empty(), "merges the landings of a point"),
     ])?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let progress = Progress::new(args.common.quiet);

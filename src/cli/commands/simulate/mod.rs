@@ -18,11 +18,11 @@ use crate::cli::{
     effects::Purpose,
     hints::further_means,
     inputs,
-    landings::{Listener, RowFile},
+    landings::RowFile,
     load::{load_journey, load_mesh_plan, plan_to_fly},
     output::{self, Pending},
     progress::Progress,
-    threads,
+    tallies, threads,
     trajectory::TrajectoryFile,
     views::{Files, show},
 };
@@ -63,7 +63,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     output::warn_all(quiet, trials.warnings());
     // Without a path the file of landings is not written.
     let (rows, rests) = (rows.filter(|_| planned.path.is_some()), density.of(&trials, args.within.as_deref())?);
-    let mut simulated = Listener::fly(trials, rows, rests, &Progress::new(quiet))?;
+    let mut simulated = tallies::fly_or_merge(trials, &args.merge, (rows, rests), &Progress::new(quiet))?;
     density.add(&mut files, &mut simulated)?;
     files.picture(plot, || simulated.picture())?;
     files.picture(plot_map, || simulated.landing_map())?;

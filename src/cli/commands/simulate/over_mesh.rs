@@ -2,7 +2,7 @@
 
 use chta::{
     report::{DocumentKind, mesh_simulate_text},
-    study::{MeshRouteQuestion, mesh_route, simulate_over_mesh},
+    study::{MeshRouteQuestion, merged_over_mesh, mesh_route, simulate_over_mesh},
 };
 
 use crate::cli::{
@@ -12,6 +12,7 @@ use crate::cli::{
     not_on_mesh,
     output::{self, Pending},
     progress::Progress,
+    tallies,
     views::{Files, show},
 };
 
@@ -37,8 +38,13 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
     let question = MeshRouteQuestion { scenario: &input.scenario, base: &input.base, front: None, roadmap: None };
     let routed = mesh_route(&question, &progress).map_err(|error| Failure::about(&input.mesh, &error))?;
     of_result.check_planned(&routed.answer.path)?;
-    let simulated =
-        simulate_over_mesh(routed, &input.scenario, &args.options(), &mut (), &progress).map_err(|error| about(&error))?;
+    let (scenario, options) = (&input.scenario, args.options());
+    let simulated = if args.merge.is_empty() {
+        simulate_over_mesh(routed, scenario, &options, &mut (), &progress)
+    } else {
+        merged_over_mesh(routed, scenario, &options, &tallies::read(&args.merge)?, &())
+    };
+    let simulated = simulated.map_err(|error| about(&error))?;
     output::warn_all(args.common.quiet, &simulated.warnings);
     let mut files = Files::default();
     files.picture(plot, || simulated.picture(&input.scenario))?;

@@ -19,6 +19,7 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded) -> Result<Answer, Failur
         ("--plot-density", args.plot_density.is_some(), "draws the landings of a path to one goal"),
         ("--plot-map", args.plot_map.is_some(), "draws the landings of a path to one goal"),
         ("--tally", args.tally.is_some(), "writes a tally of a path to one goal"),
+        ("--merge", !args.merge.is_empty(), "merges tallies of a path to one goal"),
     ])?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let in_time = TrajectoryFile::begin(&args.trajectory)?;

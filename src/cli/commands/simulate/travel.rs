@@ -19,6 +19,7 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded) -> Result<Answer, Failur
         ("--plot-map", args.plot_map.is_some(), "draws the landings of hops"),
         ("--trajectory", args.trajectory.trajectory.is_some(), "writes hops along a profile"),
         ("--tally", args.tally.is_some(), "writes a tally of hops"),
+        ("--merge", !args.merge.is_empty(), "merges tallies of hops"),
     ])?;
     loaded.ends()?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;

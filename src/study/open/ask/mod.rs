@@ -1,18 +1,29 @@
 //! The questions: each opens its scenario and gives the document of its answer.
 
+mod arena;
+mod chain;
 mod check;
+mod compare;
+mod fan;
 mod hop;
 mod map;
 mod plan;
 mod simulate;
 mod sites;
+mod stance;
+mod tally;
 mod vary;
 
+pub use arena::{ArenaAsked, arena};
+pub use chain::ChainAsked;
+pub use compare::compare;
+pub use fan::FanAsked;
 pub use hop::HopAsked;
 pub use map::{MapAsked, MapReply};
 pub use plan::PlanAsked;
 pub use simulate::Ran;
 pub use sites::SitesAsked;
+pub use stance::{StanceAsked, stance_of_contacts};
 
 use super::AskError;
 

@@ -1,13 +1,16 @@
 //! Keys that are varied: the least capability, and a verdict for every value.
 
+use std::path::PathBuf;
+
 use super::{
     super::{AskError, Draft, Purpose, Reply},
     OVER_FACETS, refuse,
 };
 use crate::{
+    ballistics::stance::ConeKind,
     progress::Progress,
     report::DocumentKind,
-    study::{Proof, Requirement, SweptKey, Trade, require, trade},
+    study::{LegsTradeQuestion, Proof, Requirement, SweptKey, Trade, legs_trade, require, trade},
 };
 
 impl Draft {
@@ -40,5 +43,20 @@ impl Draft {
         #[cfg(feature = "plot")]
         let reply = reply.drawn(move || Some(traded.picture()));
         Ok(reply)
+    }
+
+    /// Compares robots with legs and kinds of cones over the ground of the scenario; none of either: that of the scenario.
+    ///
+    /// # Errors
+    /// [`AskError`].
+    pub fn trade_legs(&self, robots: Vec<PathBuf>, cones: Vec<ConeKind>, progress: &dyn Progress) -> Result<Reply, AskError> {
+        let open = self.facets(Purpose::Trade)?.ok_or(AskError::NotHere {
+            what: "robots or cones that are varied",
+            why: "this scenario has no robot.file with a free route",
+        })?;
+        let question = LegsTradeQuestion { scenario: &open.scenario, base: &open.base, robots, cones };
+        let traded = legs_trade(&question, progress)?;
+        let json = open.document(DocumentKind::TradeLegs, &traded.warnings, &traded.answer)?;
+        Ok(Reply::new(DocumentKind::TradeLegs, json, traded.answer.is_traversable()))
     }
 }
