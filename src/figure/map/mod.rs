@@ -3,6 +3,7 @@
 mod data;
 mod hillshade;
 mod hops;
+mod inset;
 mod landings;
 mod legs_map;
 mod mesh_plan;
