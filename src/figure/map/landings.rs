@@ -9,30 +9,32 @@ use super::{
         palette::{BLACK, BLUE, SMALL_MM, VERMILION, WHITE},
         picture::paragraph,
         sheet::{Anchor, Hang, Label, Pen, Place, Sheet},
-        ticks::short,
+        ticks::{one_in, short},
     },
     data::{LandingCloud, LandingEllipse, LandingMapFigure, MapPosts},
     hops::{about_raster, no_data_symbol},
+    inset,
     names::{Bounds, Candidate, Taken},
-    panel::{MARKER_MM, MapPanel, path_symbol, start_symbol},
+    panel::{MARKER_MM, MapPanel, goal_symbol, path_symbol, start_symbol},
     raster::{self, Pattern, Window},
 };
 use crate::quantity::MapPoint;
 
 /// The ground, a single class here.
-const GROUND: RGBColor = RGBColor(205, 202, 196);
+pub(super) const GROUND: RGBColor = RGBColor(205, 202, 196);
 /// The greatest number of landings drawn; more are thinned to every n-th of each hop.
 const MOST_DOTS: usize = 2500;
 /// Corners of a drawn ellipse: on the largest map the error is below 0.1 mm.
 const CORNERS: u8 = 72;
 /// Above this number of hops the legend states only the range of their ellipses.
 const MOST_LISTED: usize = 12;
-const ELLIPSE_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.45 };
+pub(super) const ELLIPSE_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.45 };
 const CASING_PEN: Pen = Pen { colour: WHITE, width_mm: 0.95 };
 
 /// Draws the scattered landings of a path's hops and their 95 % ellipses around the planned path, over a hillshade.
 ///
-/// The map shows the area of path, landings and ellipses. More than 2 500 landings are thinned to every n-th of each hop, and the
+/// The map shows the area of path, landings and ellipses; where these are small on it, insets below it show the widest of them and the last
+/// at a larger scale. More than 2 500 landings are thinned to every n-th of each hop, and the
 /// legend says so. The number of landings beyond the DEM is stated. An ellipse contains 95 % of a Gaussian with the landings' mean
 /// and covariance; its cross marks that mean.
 ///
@@ -46,23 +48,35 @@ pub fn draw_landing_map(figure: &LandingMapFigure<'_>) -> Result<Picture, Figure
     let top_mm = figure.caption.draw(&mut sheet);
     let map = MapPanel::new(figure.dem, &window, top_mm);
     let end_mm = map.draw(&mut sheet, pixels);
+    // The path lies under the landings, which it would hide.
+    let path: Vec<MapPoint> = figure.path.iter().copied().filter(|&at| map.shows(at)).collect();
+    map.paths(&mut sheet, &[path]);
     let shown: Vec<_> = figure.clouds.iter().map(|cloud| cloud.landings.iter().filter(|&&at| map.shows(at)).collect()).collect();
     let every = shown.iter().map(Vec::len).sum::<usize>().div_ceil(MOST_DOTS).max(1);
     for &at in shown.iter().flat_map(|landings: &Vec<&MapPoint>| landings.iter().step_by(every)) {
         landing_dot(&mut sheet, map.place(*at));
     }
-    let path: Vec<MapPoint> = figure.path.iter().copied().filter(|&at| map.shows(at)).collect();
     for ellipse in figure.clouds.iter().filter_map(|cloud| cloud.ellipse) {
         map.ellipse(&mut sheet, &ellipse);
     }
-    map.paths(&mut sheet, &[path]);
     map.names_of_landings(&mut sheet, figure);
+    let end_mm = inset::draw(&mut sheet, figure, map.layout().0, end_mm + 1.0);
     let drawn = shown.iter().map(|landings| landings.len().div_ceil(every)).sum();
     let mut y = keys::draw(&mut sheet, &entries(figure, drawn, has_gaps), end_mm + 3.0) + 0.8;
     for text in words(figure, &map, &window) {
         y = paragraph(&mut sheet, &text, SMALL_MM, false, y);
     }
     Ok(Picture::page(sheet, y + 2.0))
+}
+
+/// Where the planned path ends, if it has a hop.
+fn goal(figure: &LandingMapFigure<'_>) -> Option<MapPoint> {
+    figure.path.last().copied().filter(|_| figure.path.len() > 1)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "some hundreds of hops")]
+fn ratio(count: usize, of: usize) -> f64 {
+    count as f64 / of as f64
 }
 
 /// All points that the map must contain.
@@ -124,10 +138,21 @@ impl MapPanel {
         for cloud in planned() {
             planned_symbol(sheet, self.place(cloud.planned));
         }
+        let goal = goal(figure).filter(|&at| self.shows(at));
+        if let Some(at) = goal {
+            goal_symbol(sheet, self.place(at));
+            taken.kept.push(Bounds::around(self.place(at), MARKER_MM));
+        }
         if let Some(&at) = start {
             self.name(sheet, at, "start", &mut taken);
         }
-        for cloud in planned() {
+        if let Some(at) = goal {
+            self.name(sheet, at, "goal", &mut taken);
+        }
+        // Of many hops every n-th has its number, and the last.
+        let every = one_in(ratio(figure.clouds.len(), MOST_LISTED));
+        let last = figure.clouds.last().map(|cloud| cloud.hop);
+        for cloud in planned().filter(|cloud| cloud.hop.is_multiple_of(every) || Some(cloud.hop) == last) {
             self.number(sheet, cloud, &mut taken);
         }
     }
@@ -152,14 +177,14 @@ impl MapPanel {
     }
 }
 
-fn plus(sheet: &mut Sheet, (x, y): Place) {
+pub(super) fn plus(sheet: &mut Sheet, (x, y): Place) {
     for pen in [Pen { width_mm: 0.7, ..CASING_PEN }, Pen { width_mm: 0.3, ..ELLIPSE_PEN }] {
         sheet.line(vec![(x - 0.9, y), (x + 0.9, y)], pen);
         sheet.line(vec![(x, y - 0.9), (x, y + 0.9)], pen);
     }
 }
 
-fn landing_dot(sheet: &mut Sheet, at: Place) {
+pub(super) fn landing_dot(sheet: &mut Sheet, at: Place) {
     sheet.dot(at, 0.28, BLUE);
 }
 
@@ -181,7 +206,7 @@ fn ellipse_symbol(sheet: &mut Sheet, (x, y): Place) {
 }
 
 /// A planned landing in a legend.
-fn planned_symbol(sheet: &mut Sheet, at: Place) {
+pub(super) fn planned_symbol(sheet: &mut Sheet, at: Place) {
     sheet.dot(at, 0.55, BLACK);
 }
 
@@ -191,6 +216,9 @@ fn entries(figure: &LandingMapFigure<'_>, drawn: usize, has_gaps: bool) -> Vec<(
     if !figure.path.is_empty() {
         found.push((Swatch::Symbol(start_symbol as fn(&mut Sheet, Place)), "start".to_owned()));
         found.push((Swatch::Symbol(path_symbol), "planned path".to_owned()));
+    }
+    if goal(figure).is_some() {
+        found.push((Swatch::Symbol(goal_symbol), "goal".to_owned()));
     }
     if !figure.clouds.is_empty() {
         found.push((Swatch::Symbol(planned_symbol), "planned landing".to_owned()));

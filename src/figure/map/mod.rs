@@ -4,6 +4,7 @@ mod data;
 mod density;
 mod hillshade;
 mod hops;
+mod inset;
 mod landings;
 mod legs_map;
 mod mesh_plan;

@@ -282,9 +282,11 @@ fn landing_maps_of_real_terrain_show_path_landings_and_ellipses() {
         let figure = landing_map(&dem, hops, 400, semi_m, 80.0);
         let picture = check_picture(name, || draw_landing_map(&figure).unwrap());
         let texts = texts(&picture);
-        for words in ["planned path", "planned landing", "95 % ellipse", "map x, east (m)", "N (grid)", "start"] {
+        for words in ["planned path", "planned landing", "95 % ellipse", "map x, east (m)", "N (grid)", "start", "goal"] {
             assert!(texts.contains(words), "{words:?} is missing in {texts}");
         }
+        // Small ellipses have insets.
+        assert!(texts.contains("widest scatter: enlarged "), "{texts}");
         assert!(texts.lines().any(|line| line == hops.to_string()), "the last hop's number: {texts}");
         if name == "landings-mars" {
             assert!(texts.contains("landing (1600 of 40000 drawn)"), "{texts}");
