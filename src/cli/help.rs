@@ -14,7 +14,7 @@ use super::{Failure, args::Args, threads};
 /// The name of the command that was called.
 static CALLED: OnceLock<String> = OnceLock::new();
 
-/// Where the spacing of nodes and the choice of take-off angles change the answer of a command, in lines of at most 98 characters.
+/// Where the spacing of nodes and the choice of take-off angles change the answer of a command, in lines of at most 100 characters.
 const CHANGES: [(&str, &str); 16] = [
     ("run", JOURNEY),
     (
