@@ -1696,6 +1696,25 @@ fn every_help_text_shows_units_defaults_and_an_example() {
     }
 }
 
+#[test]
+fn the_help_of_every_question_names_where_spacing_and_angles_change_the_answer() {
+    let desk = desk();
+    for command in COMMANDS.into_iter().filter(|command| !["bodies", "synth", "completions", "man", "schema"].contains(command)) {
+        let help = desk.run(&[command, "--help"]).stdout;
+        let said = help.split("Where spacing and the choice of angles change the answer:\n").nth(1).unwrap_or_default();
+        let said = said.split("\n\n").next().unwrap_or_default();
+        assert!(
+            command == "slice" || command == "report" || (said.contains("Spacing") && said.contains("ngles")),
+            "{command}: {help}"
+        );
+        assert!(!said.is_empty() && said.lines().all(|line| line.starts_with("  ") && line.len() <= 100), "{command}: {said}");
+        // What it names by name is an option or a key.
+        for name in said.split(|c: char| c.is_whitespace() || "(),;:".contains(c)).filter(|word| word.starts_with("--")) {
+            assert!(help.contains(&format!(" {name}")), "{command} has no {name}");
+        }
+    }
+}
+
 /// The example in a command's help, split into words.
 fn example(command: &str) -> Vec<String> {
     let help = desk().run(&[command, "--help"]).stdout;
