@@ -13,7 +13,9 @@ use sha2::{Digest, Sha256};
 use super::{
     Failure,
     args::TableFile,
+    claims, inputs,
     output::{self, Pending},
+    wrong_thing::Role,
 };
 
 /// A part is closed after so many rows,
@@ -40,6 +42,16 @@ pub(crate) type Rows = BTreeMap<usize, Vec<String>>;
 /// Why a table cannot be written or read; with its name.
 fn failed(file: &Path, error: &dyn std::error::Error) -> Failure {
     Failure::message(format!("{}: {error}; give a folder whose parts this version wrote, or another one", file.display()))
+}
+
+/// Reads the cases. Parquet is no text that could be another kind of file: its reader knows it.
+pub(crate) fn read_cases(file: &Path) -> Result<CaseTable, Failure> {
+    let read = |file: &Path| CaseTable::read(file).map_err(|error| Failure::of(&error));
+    if CaseTable::is_parquet(file) {
+        claims::reads(file);
+        return read(file);
+    }
+    read(&inputs::open(file, Role::Cases)?.file)
 }
 
 /// Refuses Parquet in a build without it. `what`: the option or the file that asks for it.

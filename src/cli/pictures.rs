@@ -11,7 +11,7 @@ use clap::{Arg, ArgMatches, Command};
 use super::{Failure, output};
 
 /// The options that name a picture.
-const OPTIONS: [&str; 5] = ["plot", "plot_front", "plot_map", "plot_postures", "profiles"];
+const OPTIONS: [&str; 6] = ["plot", "plot_density", "plot_front", "plot_map", "plot_postures", "profiles"];
 
 /// The command whose pictures have names of their own.
 const RUN: &str = "run";

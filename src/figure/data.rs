@@ -294,7 +294,7 @@ fn stopped(frontier: &Frontier, nodes: &NodeSet) -> StoppedFigure {
         leads_to_goal_x_m: runs(&frontier.leads_to_goal, nodes.stations()),
         gap: (frontier.nearest_to_goal.point, frontier.nearest_to_start.point),
         refusals: frontier.refusals.ranked(),
-        nearest_miss: frontier.nearest_miss.map(|miss| (miss.takeoff.point, miss.landing.point, miss.conflict.to_string())),
+        nearest_miss: frontier.nearest_miss.map(|miss| (miss.takeoff.point, miss.landing.point, miss.conflict.said(words))),
     }
 }
 

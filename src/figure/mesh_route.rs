@@ -226,7 +226,8 @@ impl MeshRouteFigure<'_> {
         let highest_m = self.routes.iter().flat_map(|route| &route.path.hops).map(|hop| hop.apex_z_m);
         let highest_m = highest_m.chain([self.start.z, self.goal.z]).fold(f64::NEG_INFINITY, f64::max);
         let over_m = 0.02 * (around.high.z - around.low.z);
-        let mut paths: Vec<(Vec<_>, Pen)> = self.walks.iter().map(|walk| (walk.iter().map(Point3::xy).collect(), WALKED)).collect();
+        let mut paths: Vec<(Vec<_>, Pen)> =
+            self.walks.iter().map(|walk| (walk.first().into_iter().chain(walk.last()).map(Point3::xy).collect(), WALKED)).collect();
         for (number, route) in self.routes.iter().enumerate() {
             let ends = |hop: &Hop| [hop.takeoff.point_m.xy(), hop.landing.point_m.xy()];
             if self.walks.is_empty() {

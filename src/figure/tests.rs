@@ -11,7 +11,7 @@ use crate::{
     graph::{Outcome, PointSpacing, SearchOptions, is_usable, search},
     hop::Split,
     path::generate,
-    quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
+    quantity::{Angle, AngleInterval, ChainPoint, MapPoint, VertexId},
     terrain::{Dem, GeoReference},
     world::{CommandSteps, Contact, Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
@@ -404,7 +404,8 @@ fn bends_are_marked_on_the_profile() {
         _ => at(20.0 + 5.0 * f64::from(i - 8), 20.0),
     });
     let grounds = vec![SegmentGround::BARE; 12];
-    let chain = PolygonalChain::new(points, grounds, Some(along.collect())).unwrap();
+    let turns = vec![VertexId(4), VertexId(8)];
+    let chain = PolygonalChain::new(points, grounds, Some(along.collect())).unwrap().with_bends(turns).unwrap();
     assert_eq!(chain.bends().len(), 2, "two right angles");
     let case = Case::new("Round two corners", chain, Hopper::with_speeds(10.0, 10.0).unwrap(), 3.711, (0.0, 60.0));
     let texts = texts(&case);

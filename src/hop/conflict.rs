@@ -138,28 +138,37 @@ impl fmt::Display for Shortfall {
     }
 }
 
-impl fmt::Display for Conflict {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Conflict {
+    /// The conflict in one sentence, with limits as `named` names them.
+    pub fn said(&self, named: impl Fn(Limit) -> String) -> String {
         match self {
             Self::Alone(limit) => match limit.shortfall {
-                Some(shortfall) => write!(f, "{} refuses every arc: {shortfall}", limit.limit),
-                None => write!(f, "{} refuses every arc", limit.limit),
+                Some(shortfall) => format!("{} refuses every arc: {shortfall}", named(limit.limit)),
+                None => format!("{} refuses every arc", named(limit.limit)),
             },
             Self::Pair { lower, upper, gap_deg } => {
-                write!(f, "{} asks for a take-off at least {gap_deg:.6} deg steeper than {} allows", lower.limit, upper.limit)?;
-                match (lower.vertex, lower.kink_x_m) {
-                    (Some(vertex), _) => write!(f, ", over vertex {}", vertex.index() + 1),
-                    (None, Some(x_m)) => write!(f, ", for the clearance over the ground at x = {x_m} m"),
-                    (None, None) => Ok(()),
-                }
+                let [low, high] = [lower, upper].map(|limit| named(limit.limit));
+                let place = match (lower.vertex, lower.kink_x_m) {
+                    (Some(vertex), _) => format!(", over vertex {}", vertex.index() + 1),
+                    (None, Some(x_m)) => format!(", for the clearance over the ground at x = {x_m} m"),
+                    (None, None) => String::new(),
+                };
+                format!("{low} asks for a take-off at least {gap_deg:.6} deg steeper than {high} allows{place}")
             }
             Self::Commands { limit, left_m_s: [least, greatest], nearest_m_s, .. } => {
-                write!(f, "{limit} leaves no arc: the other limits leave take-off speeds from {least:.6} to {greatest:.6} m/s, ")?;
-                match limit {
-                    Limit::TakeoffSpeedMin => write!(f, "the least one of the machine is {nearest_m_s} m/s"),
-                    _ => write!(f, "the nearest one that the machine has is {nearest_m_s} m/s"),
-                }
+                let has = match limit {
+                    Limit::TakeoffSpeedMin => format!("the least one of the machine is {nearest_m_s} m/s"),
+                    _ => format!("the nearest one that the machine has is {nearest_m_s} m/s"),
+                };
+                let left = format!("the other limits leave take-off speeds from {least:.6} to {greatest:.6} m/s");
+                format!("{} leaves no arc: {left}, {has}", named(*limit))
             }
         }
+    }
+}
+
+impl fmt::Display for Conflict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.said(|limit| limit.to_string()))
     }
 }

@@ -176,5 +176,9 @@ pub fn legs_plan_text(answer: &LegsPlanAnswer) -> String {
     }
     let hops = mesh_plan_text(&answer.plan).replace("these contacts", "these stances").replace("contacts (", "stances (");
     let walk = answer.walk.as_ref().map(|walk| format!("\n{}", walk.text()));
+    if walk.is_some() {
+        sheet
+            .line(format_args!("the table and the sums of the hops alone come first, those of walks and hops together at the end"));
+    }
     sheet.into_text() + &hops + walk.as_deref().unwrap_or_default()
 }

@@ -111,14 +111,21 @@ fn parquet_cases(file: &Path) -> Result<Cases, CaseTableError> {
 }
 
 impl CaseTable {
+    /// Whether a file is Parquet, by its first bytes; a pipe is not.
+    pub fn is_parquet(file: &Path) -> bool {
+        if !file.is_file() {
+            return false;
+        }
+        let mut beginning = [0; 4];
+        File::open(file).and_then(|mut opened| opened.read_exact(&mut beginning)).is_ok() && beginning == *b"PAR1"
+    }
+
     /// Reads a table: CSV, or Parquet by its first bytes.
     ///
     /// # Errors
     /// [`CaseTableError`].
     pub fn read(file: &Path) -> Result<Self, CaseTableError> {
-        let mut beginning = [0; 4];
-        let is_parquet = File::open(file).and_then(|mut opened| opened.read_exact(&mut beginning)).is_ok() && beginning == *b"PAR1";
-        let (columns, rows) = if is_parquet { parquet_cases(file)? } else { csv_cases(file)? };
+        let (columns, rows) = if Self::is_parquet(file) { parquet_cases(file)? } else { csv_cases(file)? };
         let mut known = BTreeSet::new();
         for column in &columns {
             let (table, name) = column.split_once('.').unwrap_or(("", column));
@@ -133,7 +140,7 @@ impl CaseTable {
         if rows.is_empty() {
             return Err(CaseTableError::Empty { file: file.to_path_buf() });
         }
-        let place = if is_parquet { "row" } else { "line" };
+        let place = if Self::is_parquet(file) { "row" } else { "line" };
         Ok(Self { name: file.display().to_string(), place, columns, rows })
     }
 

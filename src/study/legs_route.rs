@@ -362,7 +362,7 @@ impl LegsRouted {
             |path| {
                 let (hops, time_s) = (path.hops.len(), path.totals.flight_time_s);
                 let walked = self.answer.walk.as_ref().and_then(|walk| walk.totals);
-                let walked = walked.map(|walk| format!(", {:.2} m walked in {} stretches", walk.drive_length_m, walk.drive_legs));
+                let walked = walked.map(|walk| format!(", {:.2} m walked", walk.drive_length_m));
                 format!(
                     "{robot}: at most {hops} hops over these {stances} stances, {time_s:.2} s in flight{}",
                     walked.unwrap_or_default()

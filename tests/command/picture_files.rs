@@ -122,7 +122,7 @@ fn every_page_has_a_file_that_the_answer_names() {
     // A page is no answer of another option's file, nor of an input.
     desk.write("taken-2.svg", "mine");
     desk.refused(
-        &["simulate", "map.toml", "--trials", "20", "--plot", "taken.svg", "--plot-map", "taken-2.svg"],
+        &["simulate", "map.toml", "--trials", "20", "--quiet", "--plot", "taken.svg", "--plot-map", "taken-2.svg"],
         &["taken-2.svg: two answers would be written to this file"],
     );
     assert_eq!(desk.read("taken-2.svg"), "mine");

@@ -280,7 +280,7 @@ pub(crate) struct SimulateArgs {
     #[arg(
         long, value_name = "FILE", num_args = 1..,
         conflicts_with_all = [
-            "experiment", "compare", "until_half_width", "output", "plot", "plot_map", "density", "trajectory", "plan_anew"
+            "experiment", "compare", "until_half_width", "output", "plot", "plot_map", "density", "plot_density", "trajectory", "plan_anew"
         ]
     )]
     pub(crate) merge: Vec<PathBuf>,

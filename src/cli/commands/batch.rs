@@ -8,7 +8,7 @@ use chta::study::{
 use crate::cli::{
     Answer, Failure,
     args::{BatchArgs, TableFile},
-    batch_folder::{BatchFolder, check_format},
+    batch_folder::{BatchFolder, check_format, read_cases},
     inputs, interrupt,
     load::load_draft,
     output::{self, Pending},
@@ -19,11 +19,12 @@ use crate::cli::{
 
 /// Answers every case.
 pub(crate) fn run(args: &BatchArgs) -> Result<Answer, Failure> {
-    let files = [(Some(args.cases.as_path()), Role::Cases), (Some(args.scenario.as_path()), Role::ScenarioOption)];
+    let text = Some(args.cases.as_path()).filter(|file| !CaseTable::is_parquet(file));
+    let files = [(text, Role::Cases), (Some(args.scenario.as_path()), Role::ScenarioOption)];
     inputs::look_at(args.input_max_gib, &files)?;
     threads::start(args.threads)?;
     let draft = Draft { shared: Some(SharedInputs::default()), ..load_draft(&args.scenario, &args.set)? };
-    let cases = CaseTable::read(&inputs::open(&args.cases, Role::Cases)?.file).map_err(|error| Failure::of(&error))?;
+    let cases = read_cases(&args.cases)?;
     if let Some(file) = &args.collect {
         check_format(&format!("--collect {}", file.display()), TableFile::of(file))?;
     }

@@ -299,7 +299,8 @@ fn comparisons_name_every_scenario_with_verdict_and_hops() {
     assert_eq!(texts(&picture).matches("distance along the chain, x (m)").count(), 2, "a panel each");
     // More than fit on a page.
     let many: Vec<_> = (0..9).map(|i| scenario(&format!("Ground {i}"), waves(0.0, 101 + i, 5.0), 9.0, 10)).collect();
-    let picture = check_picture("compare-pages", || draw_compare(&CompareFigure { scenarios: many.clone(), ..figure.clone() }).unwrap());
+    let picture =
+        check_picture("compare-pages", || draw_compare(&CompareFigure { scenarios: many.clone(), ..figure.clone() }).unwrap());
     assert!(picture.pages().len() > 1 && picture.pages().iter().all(|page| texts(page).starts_with("Hoppers")));
 }
 
