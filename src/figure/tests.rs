@@ -427,7 +427,7 @@ fn a_journey_without_a_path_shows_how_far_one_gets_and_which_limits_refuse() {
     for (limit, count) in frontier.refusals.ranked() {
         assert!(texts.contains(&limits::words(limit)) && texts.contains(&count.to_string()), "{limit} {count}");
     }
-    let miss = frontier.nearest_miss.unwrap().conflict.to_string();
+    let miss = frontier.nearest_miss.unwrap().conflict.said(limits::words);
     assert!(texts.replace('\n', " ").contains(&miss), "{miss}\n{texts}");
     assert!(texts.contains("gap 25 m") && texts.contains("no path found over"));
     // For a manager: how far, what stops it, what would do.
