@@ -172,7 +172,9 @@ impl Sheet {
             match mark {
                 Mark::Line { points, pen } => {
                     pen.width_mm *= by;
-                    points.iter_mut().for_each(|point| *point = place(*point));
+                    for point in points.iter_mut() {
+                        *point = place(*point);
+                    }
                 }
                 Mark::Area { points, .. } => points.iter_mut().for_each(|point| *point = place(*point)),
                 Mark::Dot { centre, radius_mm, pen, .. } => {

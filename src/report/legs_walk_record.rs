@@ -33,7 +33,7 @@ impl LegsWalkRecord {
         );
         if !self.refusals.is_empty() {
             let rows: Vec<String> = self.refusals.iter().map(|row| format!("{} {}", row.limit, row.legs)).collect();
-            found.push_str(&format!("lines refused by {}\n", rows.join(", ")));
+            found = found + "lines refused by " + &rows.join(", ") + "\n";
         }
         found + &legs_and_totals(&self.legs, self.totals.as_ref())
     }

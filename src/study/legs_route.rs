@@ -186,6 +186,7 @@ pub struct LegsRouted {
 ///
 /// # Errors
 /// [`LegsRouteError`].
+#[expect(clippy::too_many_lines, reason = "one plan from its files to its answer, step by step")]
 pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> Result<LegsRouted, LegsRouteError> {
     let LegsRouteQuestion { scenario, base } = question;
     let file = base.join(scenario.legs.file.as_deref().unwrap_or_else(|| Path::new("")));
@@ -250,7 +251,7 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
     }
     warnings.extend(left_out(scenario, grown.end, facets));
     warnings.extend(assumptions(&ground));
-    warnings.extend(walking.as_ref().map(|walking| walking.assumptions(scenario)).unwrap_or_default());
+    warnings.extend(walking.as_ref().map(|_| Walking::assumptions(scenario)).unwrap_or_default());
     warnings.extend(without_effect(question.scenario));
     let gap = match &walking {
         _ if grown.route.path.is_some() => None,

@@ -51,7 +51,7 @@ impl Walking {
     }
 
     /// What walking assumes, and what it leaves out.
-    pub(super) fn assumptions(&self, scenario: &Scenario) -> Vec<String> {
+    pub(super) fn assumptions(scenario: &Scenario) -> Vec<String> {
         let mut found = vec![
             "walking is judged by the limits of [drive] along the straight line under the root: neither the feet nor the trunk are looked at between \
              two stances"

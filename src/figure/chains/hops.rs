@@ -105,7 +105,7 @@ pub fn draw_hop_profiles(figure: &HopProfilesFigure) -> Result<Picture, FigureEr
 /// The pages of so many hops, whose first row on the first page begins at a height.
 fn pages(hops: usize, first_mm: f64) -> usize {
     let rows = hops.div_ceil(COLUMNS);
-    let fit = |from_mm: f64| (1..).take_while(|row| from_mm + f64::from(*row) * CELL_MM.1 <= PAGE_HEIGHT_MM).count();
+    let fit = |from_mm: f64| (1..1000).take_while(|row| from_mm + f64::from(*row) * CELL_MM.1 <= PAGE_HEIGHT_MM).count();
     let next_mm = TOP_MM + 1.4 * TEXT_MM + 3.0;
     1 + rows.saturating_sub(fit(first_mm)).div_ceil(fit(next_mm).max(1))
 }

@@ -253,7 +253,11 @@ mod tests {
         let counts: Vec<u32> = (0..600_usize)
             .map(|i| {
                 let away = libm::hypot((i / 30) as f64 - 9.0, (i % 30) as f64 - 12.0);
-                if away > 11.0 { 0 } else { 1 + (900.0 * libm::exp(-away)) as u32 }
+                if away > 11.0 {
+                    0
+                } else {
+                    (1..=900_u32).take_while(|count| f64::from(*count) <= 900.0 * libm::exp(-away)).fold(1, |sum, _| sum + 1)
+                }
             })
             .collect();
         let shares: Vec<f64> = counts.iter().map(|count| f64::from(*count) / 5000.0).collect();

@@ -30,7 +30,6 @@ pub struct RoadmapQuestion<'a> {
 
 /// The move from one contact of a path to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "a path has few, and nearly all are hops")]
 pub enum RoadmapMove {
     /// A hop along an arc.
     Hop(Arc),
