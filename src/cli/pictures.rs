@@ -54,7 +54,7 @@ fn width_mm(text: &str) -> Result<f64, String> {
 pub(super) fn take_width(name: &str, command: &ArgMatches) -> Result<(), Failure> {
     let Some(width_mm) = command.try_get_one::<f64>(WIDTH).ok().flatten() else { return Ok(()) };
     let is_given = |option: &&str| command.try_contains_id(option).unwrap_or(false);
-    if name != RUN && !OPTIONS.iter().any(|option| is_given(&option)) {
+    if name != RUN && !OPTIONS.iter().any(is_given) {
         return Err(Failure::message(
             "--width-mm: found no picture to have this width, expected an option that names one: give --plot FILE.svg, or leave the width out",
         ));
