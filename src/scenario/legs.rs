@@ -38,7 +38,8 @@ pub(super) fn legs(entries: &mut Entries) -> LegsKeys {
     keys
 }
 
-/// Reports what a robot with legs does not do: it takes no time to turn as it walks, visits no targets, and leaves no layer for a while.
+/// Reports what a robot with legs does not do: it takes no time to turn as it walks, visits no targets, leaves no layer for a while, and
+/// counts no costs of layers.
 pub(super) fn check(entries: &mut Entries, legs: &LegsKeys, (drives, visits): (bool, bool), layers: &[LayerKeys]) {
     if legs.file.is_none() {
         return;
@@ -60,5 +61,9 @@ pub(super) fn check(entries: &mut Entries, legs: &LegsKeys, (drives, visits): (b
     if let Some(layer) = layers.iter().find(|layer| layer.rule.outage.is_some()) {
         let what = format!("layer.{}, which may be left for a while", layer.rule.name);
         refuse(&what, "remove the keys of the outage, so that the layer holds throughout, or remove robot.file");
+    }
+    if let Some(layer) = layers.iter().find(|layer| layer.rule.cost.is_some()) {
+        let what = format!("layer.{}, which has a cost", layer.rule.name);
+        refuse(&what, "remove cost_per_contact, cost_per_m and total_max, or robot.file for a hopper that is a point");
     }
 }

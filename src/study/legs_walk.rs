@@ -1,15 +1,15 @@
 //! The moves of a robot with legs that walks and hops over a DEM, each walked or flown again by the independent checker.
 
 use super::{
-    FreeRouteError, LegsRouteError, MeshRouteError,
-    travel::{DriveDefect, Driven, differs, drive_leg, driven_again, hop_leg},
+    LegsRouteError, MeshRouteError,
+    travel::{Driven, agreed, drive_leg, driven_again, hop_leg, sums_record},
 };
 use crate::{
     drive::DriveGround,
     ground::{DemGround, Stance, StanceGround},
     path::HopPath,
     planner::{
-        Amount, Amounts, WalkingStances,
+        WalkingStances,
         roadmap::{GrownRoadmap, RoadmapMove, RoadmapPath},
     },
     report::{DriveRefusalRecord, HopRecord, LegsWalkRecord, TravelLegRecord, TravelTotalsRecord},
@@ -107,39 +107,9 @@ impl Walking {
                 }
             }
         }
-        agreed(&found.totals, [mission_time_s, energy_j_kg, travelled_m])?;
-        let lines = || walked.iter().flat_map(|driven| &driven.legs);
-        let drive_length_m = lines().map(|line| line.length_m).sum::<f64>();
-        let rate = rover.limits().failure_per_m;
-        let flown = &path.totals;
-        let totals = TravelTotalsRecord {
-            hops: path.hops.len() as u64,
-            drive_legs: stretches,
-            mission_time_s,
-            drive_time_s: lines().map(|line| line.time_s).sum(),
-            flight_time_s: flown.flight_time_s,
-            energy_j_kg,
-            energy_j: limits.mass_kg.map(|mass_kg| mass_kg * energy_j_kg),
-            delta_v_m_s: flown.delta_v_m_s,
-            propellant_kg: flown.propellant.map(|propellant| propellant.used_kg),
-            peak_takeoff_speed_m_s: flown.peak_takeoff_speed_m_s,
-            distance_m: travelled_m,
-            drive_length_m,
-            climb_m: lines().map(|line| line.climb_m).sum(),
-            descent_m: lines().map(|line| line.descent_m).sum(),
-            drive_success: (rate > 0.0).then(|| libm::exp(-rate * drive_length_m)),
-        };
-        Ok((legs, totals))
+        let sums = [mission_time_s, energy_j_kg, travelled_m];
+        agreed(&found.totals, sums).map_err(Box::new)?;
+        let walked: Vec<&Driven> = walked.iter().collect();
+        Ok((legs, sums_record((limits, rover), (&walked, stretches), path, sums)))
     }
-}
-
-/// Refuses sums over the moves that are not those of the search.
-fn agreed(planned: &Amounts, sums: [f64; 3]) -> Result<(), LegsRouteError> {
-    for (amount, sum) in [Amount::MissionTime, Amount::Energy, Amount::Distance].into_iter().zip(sums) {
-        if differs(planned.of(amount), sum) {
-            let problem = format!("the moves add up to {sum} in {amount}, and the search has {}", planned.of(amount));
-            return Err(Box::new(FreeRouteError::Drive(DriveDefect(problem))).into());
-        }
-    }
-    Ok(())
 }

@@ -347,6 +347,10 @@ fn what_makes_no_stance_is_named() {
         &["layer.sun.raster=\"sun.asc\"", "layer.sun.min=1", "layer.sun.outage_hops_max=2"],
         &["beside layer.sun, which may be left for a while", "remove the keys of the outage"],
     );
+    // Its search counts no costs: a plan of the least would be any plan, and a budget always kept.
+    for cost in ["layer.sun.cost_per_contact=1", "layer.sun.cost_per_m=1"] {
+        refused(&["layer.sun.raster=\"sun.asc\"", cost], &["beside layer.sun, which has a cost", "remove cost_per_contact"]);
+    }
     // A mesh whose corners go round the other way: its outer side is below.
     desk.write("inverted.obj", "v -3 -3 0\nv 3 -3 0\nv 3 3 0\nv -3 3 0\nf 1 4 3\nf 1 3 2\n");
     let inverted = desk.run(&["stance", "inverted.obj", "--at=0,0,0.1", "--scenario", "plan.toml"]);

@@ -148,6 +148,7 @@ impl<N: Clone + Send + Sync> Roadmap<N> {
         };
         let rows = (0..all).into_par_iter().map_init(G::Buffers::default, row);
         let rows: Vec<Vec<(usize, SlopeInterval)>> = rows.collect::<Result<_, Cancelled>>()?;
+        let walked = RoadmapWalks::found(ground, &of, known..all, &meter)?;
         meter.check()?;
         let pairs = |count: usize| count as u64 * (count as u64).saturating_sub(1);
         self.pairs_tested += pairs(all) - pairs(known);
@@ -160,7 +161,7 @@ impl<N: Clone + Send + Sync> Roadmap<N> {
                 self.graph.add_edge(NodeIndex::new(from), NodeIndex::new(to), lofts);
             }
         }
-        self.walks.extend(ground, &|node| &self.graph[NodeIndex::new(node)], known..all);
+        self.walks.add(all, walked);
         Ok(())
     }
 

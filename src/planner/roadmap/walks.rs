@@ -9,10 +9,14 @@ use super::RoadmapGround;
 use crate::{
     drive::{DriveLimit, DriveRefusalCounts},
     planner::Amounts,
+    progress::{Cancelled, Meter},
 };
 
 /// Start and goal, from and to which every node is tried, however far away.
 const ENDS: usize = 2;
+
+/// A line from one node to another, and what it takes or which limit refuses it.
+type Line = ([usize; 2], Result<Amounts, DriveLimit>);
 
 /// The straight lines between nodes that a machine walks. Each node is joined to so many of its nearest when it is added, and to start and goal: a
 /// line is found once and stays.
@@ -59,22 +63,24 @@ impl RoadmapWalks {
         ends
     }
 
-    /// Tests the lines between new nodes and those nearest to them, both ways.
+    /// The lines between new nodes and those nearest to them, both ways; `None` where the machine hops alone.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
     ///
     /// # Complexity
     /// A distance for every pair with a new node, and two lines for each new node and each neighbour.
-    pub(super) fn extend<'n, G: RoadmapGround<Node: 'n>>(
-        &mut self,
+    pub(super) fn found<'n, G: RoadmapGround<Node: 'n>>(
         ground: &G,
         node: &(dyn Fn(usize) -> &'n G::Node + Sync),
         new: Range<usize>,
-    ) {
+        meter: &Meter<'_>,
+    ) -> Result<Option<Vec<Line>>, Cancelled> {
         let neighbours = ground.walk_neighbours();
         if neighbours == 0 {
-            return;
+            return Ok(None);
         }
         let all = new.end;
-        self.from.resize_with(all, Vec::new);
         let places: Vec<_> = (0..all).map(|number| ground.point_m(node(number)).xy()).collect();
         let nearest = |of: usize| {
             let mut others: Vec<(f64, usize)> =
@@ -85,10 +91,19 @@ impl RoadmapWalks {
         };
         let pairs: BTreeSet<[usize; 2]> = new.into_par_iter().flat_map_iter(nearest).collect();
         let lines: Vec<[usize; 2]> = pairs.into_iter().flat_map(|[a, b]| [[a, b], [b, a]]).collect();
-        let walked: Vec<Result<Amounts, DriveLimit>> =
-            lines.par_iter().map(|[from, to]| ground.walk(node(*from), node(*to))).collect();
-        for ([from, to], found) in lines.into_iter().zip(walked) {
-            self.tested += 1;
+        let walked = |ends: &[usize; 2]| {
+            meter.check()?;
+            Ok((*ends, ground.walk(node(ends[0]), node(ends[1]))))
+        };
+        lines.par_iter().map(walked).collect::<Result<_, Cancelled>>().map(Some)
+    }
+
+    /// Adds lines that were found among so many nodes.
+    pub(super) fn add(&mut self, nodes: usize, lines: Option<Vec<Line>>) {
+        let Some(lines) = lines else { return };
+        self.from.resize_with(nodes, Vec::new);
+        self.tested += lines.len() as u64;
+        for ([from, to], found) in lines {
             match found {
                 Ok(amounts) => self.from[from].push((to, amounts)),
                 Err(limit) => self.refusals.count(limit),

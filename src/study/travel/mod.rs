@@ -13,8 +13,8 @@ mod walk;
 
 pub use map::{ReachedBy, TravelMap, TravelMapOptions, travel_map, travel_map_size};
 pub use plan::{TravelOptions, TravelPlanned, travel_plan};
-pub(super) use records::{drive_leg, hop_leg};
+pub(super) use records::{drive_leg, hop_leg, sums_record};
 pub use size::travel_size;
 pub use trials::{TravelSimulated, travel_simulate};
 pub use walk::DriveDefect;
-pub(super) use walk::{Driven, differs, driven_again};
+pub(super) use walk::{Driven, agreed, driven_again};

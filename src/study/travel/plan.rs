@@ -7,12 +7,11 @@ use super::super::{
     nodes::{coarse_nodes, level_hop_m, post_spacing_m},
 };
 use super::{
-    records::{drive_leg, hop_leg, point},
+    records::{drive_leg, hop_leg, point, sums_record},
     search::TravelSearch,
     walk::{Driven, Stretch, agreed_sums, stretches},
 };
 use crate::{
-    drive::DriveLeg,
     graph::proof::ProofVerdict,
     ground::{DemGround, Surface},
     path::{Hop, HopPath, Totals},
@@ -251,7 +250,7 @@ fn totals(
     (flown, planned): (&HopPath, &Amounts),
 ) -> Result<TravelTotalsRecord, JourneyError> {
     let (free, rover) = (&search.free, &search.keys.rover);
-    let [mission_time_s, energy_j_kg, distance_m] = agreed_sums(search, walked, planned)?;
+    let sums = agreed_sums(search, walked, planned)?;
     let driven: Vec<&Driven> = walked
         .iter()
         .filter_map(|stretch| match stretch {
@@ -259,27 +258,8 @@ fn totals(
             Stretch::Hops(_) => None,
         })
         .collect();
-    let legs = || driven.iter().flat_map(|driven| &driven.legs);
-    let sum = |of: fn(&DriveLeg) -> f64| legs().map(of).sum::<f64>();
-    let drive_length_m = sum(|leg| leg.length_m);
-    let rate = rover.limits().failure_per_m;
-    Ok(TravelTotalsRecord {
-        hops: flown.hops.len() as u64,
-        drive_legs: driven.len() as u64,
-        mission_time_s,
-        drive_time_s: sum(|leg| leg.time_s) + driven.iter().map(|driven| driven.turn_time_s).sum::<f64>(),
-        flight_time_s: flown.totals.flight_time_s,
-        energy_j_kg,
-        energy_j: free.ground.hopper().limits().mass_kg.map(|mass_kg| mass_kg * energy_j_kg),
-        delta_v_m_s: flown.totals.delta_v_m_s,
-        propellant_kg: flown.totals.propellant.map(|propellant| propellant.used_kg),
-        peak_takeoff_speed_m_s: flown.totals.peak_takeoff_speed_m_s,
-        distance_m,
-        drive_length_m,
-        climb_m: sum(|leg| leg.climb_m),
-        descent_m: sum(|leg| leg.descent_m),
-        drive_success: (rate > 0.0).then(|| libm::exp(-rate * drive_length_m)),
-    })
+    let (limits, stretches) = (free.ground.hopper().limits(), driven.len() as u64);
+    Ok(sums_record((limits, rover), (&driven, stretches), flown, sums))
 }
 
 /// The legs as rows.

@@ -4,9 +4,9 @@ use super::walk::Driven;
 use crate::{
     drive::{DriveLeg, Extreme},
     ground::MapPosition,
-    path::{Hop, heading_deg},
+    path::{Hop, HopPath, heading_deg},
     quantity::Angle,
-    report::{DriveLegRecord, DriveMarginsRecord, HopLegRecord, HopRecord},
+    report::{DriveLegRecord, DriveMarginsRecord, HopLegRecord, HopRecord, TravelTotalsRecord},
     world::{HopperLimits, Rover},
 };
 
@@ -57,6 +57,35 @@ pub(in crate::study) fn drive_leg(rover: &Rover, driven: &Driven, leg: usize) ->
         steepest_deg: Angle::from_slope(slope).degrees(),
         steepest_at_m: at.into(),
         margins: DriveMarginsRecord::of(legs, rover),
+    }
+}
+
+/// The sums over driven stretches, of so many without a hop between them, and hops; mission time, energy and distance are added up already.
+pub(in crate::study) fn sums_record(
+    (limits, rover): (&HopperLimits, &Rover),
+    (driven, stretches): (&[&Driven], u64),
+    flown: &HopPath,
+    [mission_time_s, energy_j_kg, distance_m]: [f64; 3],
+) -> TravelTotalsRecord {
+    let sum = |of: fn(&DriveLeg) -> f64| driven.iter().flat_map(|driven| &driven.legs).map(of).sum::<f64>();
+    let drive_length_m = sum(|leg| leg.length_m);
+    let rate = rover.limits().failure_per_m;
+    TravelTotalsRecord {
+        hops: flown.hops.len() as u64,
+        drive_legs: stretches,
+        mission_time_s,
+        drive_time_s: sum(|leg| leg.time_s) + driven.iter().map(|driven| driven.turn_time_s).sum::<f64>(),
+        flight_time_s: flown.totals.flight_time_s,
+        energy_j_kg,
+        energy_j: limits.mass_kg.map(|mass_kg| mass_kg * energy_j_kg),
+        delta_v_m_s: flown.totals.delta_v_m_s,
+        propellant_kg: flown.totals.propellant.map(|propellant| propellant.used_kg),
+        peak_takeoff_speed_m_s: flown.totals.peak_takeoff_speed_m_s,
+        distance_m,
+        drive_length_m,
+        climb_m: sum(|leg| leg.climb_m),
+        descent_m: sum(|leg| leg.descent_m),
+        drive_success: (rate > 0.0).then(|| libm::exp(-rate * drive_length_m)),
     }
 }
 

@@ -99,7 +99,7 @@ pub(in crate::study) fn driven_again(
 }
 
 /// Whether two ways to add up the same differ by more than rounding.
-pub(in crate::study) fn differs(a: f64, b: f64) -> bool {
+fn differs(a: f64, b: f64) -> bool {
     /// As a share.
     const ROUNDING: f64 = 1e-6;
     (a - b).abs() > ROUNDING * a.abs().max(b.abs()).max(f64::MIN_POSITIVE)
@@ -141,13 +141,19 @@ fn turn_time_s(rover: &Rover, places: &[MapPosition]) -> f64 {
 /// A [`DriveDefect`], where the search has other sums.
 pub(super) fn agreed_sums(search: &TravelSearch, stretches: &[Stretch], planned: &Amounts) -> Result<[f64; 3], JourneyError> {
     let sums = sums(search, stretches);
+    agreed(planned, sums)?;
+    Ok(sums)
+}
+
+/// Refuses sums of mission time, energy and distance over legs that are not those of the search.
+pub(in crate::study) fn agreed(planned: &Amounts, sums: [f64; 3]) -> Result<(), FreeRouteError> {
     for (amount, sum) in [Amount::MissionTime, Amount::Energy, Amount::Distance].into_iter().zip(sums) {
         if differs(planned.of(amount), sum) {
             let problem = format!("the legs add up to {sum} in {amount}, and the search has {}", planned.of(amount));
-            return Err(FreeRouteError::Drive(DriveDefect(problem)).into());
+            return Err(FreeRouteError::Drive(DriveDefect(problem)));
         }
     }
-    Ok(sums)
+    Ok(())
 }
 
 fn sums(search: &TravelSearch, stretches: &[Stretch]) -> [f64; 3] {
