@@ -4,7 +4,7 @@ use std::path::Path;
 
 use chta::{
     report::DensityRecord,
-    study::{Case, Simulated, Trials},
+    study::{Case, Drift, Drifted, Simulated, Trials},
     terrain::{Band, ResultBands, result_geotiff_bytes},
     uncertainty::RestDensity,
 };
@@ -22,6 +22,11 @@ pub(crate) fn check(args: &SimulateArgs, case: &Case) -> Result<(), Failure> {
     if let Some((option, _)) = wanted.iter().find(|(_, file)| file.is_some() && !case.is_on_dem()) {
         return Err(Failure::message(format!("{option}: the landings lie on no DEM; give the scenario [terrain] dem")));
     }
+    check_raster(args)
+}
+
+/// Refuses a raster that is no GeoTIFF.
+pub(crate) fn check_raster(args: &SimulateArgs) -> Result<(), Failure> {
     let Some(file) = &args.density else { return Ok(()) };
     let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     if !matches!(ending.as_deref(), Some("tif" | "tiff")) {
@@ -55,11 +60,32 @@ impl<'a> DensityFiles<'a> {
         Ok(self.counted.as_mut())
     }
 
+    /// The same for trials without a plan.
+    pub(crate) fn of_drift(&mut self, trials: &Drift, within: Option<&Path>) -> Result<Option<&mut RestDensity>, Failure> {
+        let is_wanted = self.raster.is_some() || self.picture.is_some();
+        self.counted = is_wanted.then(|| trials.density(within)).transpose()?;
+        Ok(self.counted.as_mut())
+    }
+
     /// Adds both to the files of an answer, and their numbers to the answer. Without a path nothing was flown.
-    pub(crate) fn add(self, files: &mut Files<'a>, simulated: &mut Simulated) -> Result<(), Failure> {
-        let Some(density) = self.counted.filter(|density| density.trials() > 0) else { return Ok(()) };
+    pub(crate) fn add(mut self, files: &mut Files<'a>, simulated: &mut Simulated) -> Result<(), Failure> {
+        let Some(density) = self.counted.take().filter(|density| density.trials() > 0) else { return Ok(()) };
         simulated.answer.density = Some(DensityRecord::new(&density));
-        files.picture(self.picture, || simulated.density_map(&density))?;
+        files.picture(self.picture.take(), || simulated.density_map(&density))?;
+        self.write(files, &density)
+    }
+
+    /// The same for trials without a plan.
+    pub(crate) fn add_drift(mut self, files: &mut Files<'a>, flown: Drifted) -> Result<Drifted, Failure> {
+        let Some(density) = self.counted.take() else { return Ok(flown) };
+        let flown = flown.with_density(&density);
+        files.picture(self.picture.take(), || Some(flown.density_map(&density)))?;
+        self.write(files, &density)?;
+        Ok(flown)
+    }
+
+    /// Writes the raster.
+    fn write(self, files: &mut Files<'a>, density: &RestDensity) -> Result<(), Failure> {
         let Some(raster) = self.raster else { return Ok(()) };
         #[expect(clippy::cast_possible_truncation, reason = "shares of a raster in single precision")]
         let single = |shares: Vec<f64>| shares.into_iter().map(|share| share as f32).collect::<Vec<f32>>();

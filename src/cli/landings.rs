@@ -10,7 +10,7 @@ use chta::{
         MapKnowledge,
         landings::{CsvLandings, LandingColumns, LandingRow, LandingWriter},
     },
-    study::{Simulated, Trials},
+    study::{Drift, Drifted, SimulateOptions, Simulated, Trials},
     terrain::MapProjection,
     uncertainty::{HopRecord, Observer, Policy, RestDensity, TrialRecord},
 };
@@ -133,6 +133,19 @@ impl<'a> Listener<'a> {
         let flown = flown?;
         listener.rows.map_or(Ok(()), RowFile::keep)?;
         Ok(flown)
+    }
+}
+
+impl<'a> Listener<'a> {
+    /// Flies trials without a plan, and counts where they rest.
+    pub(crate) fn fly_drift(
+        trials: Drift,
+        options: &SimulateOptions,
+        density: Option<&'a mut RestDensity>,
+        progress: &'a Progress,
+    ) -> Result<Drifted, Failure> {
+        let mut listener = Self { rows: None, density, policy: Policy::OpenLoop, failed: None, progress };
+        Ok(trials.fly(options, &mut listener, progress)?)
     }
 }
 

@@ -17,6 +17,7 @@ mod landings;
 mod load;
 mod map_input;
 mod map_outputs;
+mod not_for_drift;
 mod not_for_targets;
 mod not_for_travel;
 mod not_on_mesh;

@@ -14,6 +14,9 @@ const WHOLE_TRIAL: u128 = 1 << 40;
 /// The first block of the draws of measured rows, one for each hop: no height field has so many waves.
 const ROWS: u128 = 1 << 41;
 
+/// The first block of the draws of uncontrolled headings, one for each hop: there are no so many rows.
+const HEADINGS: u128 = 1 << 42;
+
 /// 32-bit words of the draws of friction, behind which those of the biases follow.
 const WORDS_OF_FRICTION: u128 = 4;
 
@@ -24,6 +27,7 @@ const WORDS_OF_FRICTION: u128 = 4;
 ///   block 2^40            friction (2), biases of speed and take-off angle (2), of heading (2)
 ///   blocks from 2^40 + 4  terrain height (4 for each wave)
 ///   blocks from 2^41      measured rows (1 for each hop)
+///   blocks from 2^42      uncontrolled headings (1 for each hop)
 /// ```
 ///
 /// Every hop uses its whole block, even if a deviation is zero and whatever the policy, so that runs with different deviations or
@@ -32,6 +36,8 @@ pub(crate) struct TrialDraws {
     source: ChaCha8Rng,
     /// The same, at the draws of measured rows.
     rows: ChaCha8Rng,
+    /// The same, at the draws of uncontrolled headings.
+    headings: ChaCha8Rng,
 }
 
 /// Which pairs of errors are used, and their distribution; the others are set to zero without being computed.
@@ -60,7 +66,8 @@ pub(crate) struct HopDraws {
 
 impl TrialDraws {
     pub(crate) fn seeded(seed: u64) -> Self {
-        Self { source: ChaCha8Rng::seed_from_u64(seed), rows: ChaCha8Rng::seed_from_u64(seed) }
+        let source = || ChaCha8Rng::seed_from_u64(seed);
+        Self { source: source(), rows: source(), headings: source() }
     }
 
     /// Moves to the first hop of a trial.
@@ -109,6 +116,17 @@ impl TrialDraws {
         self.rows.random::<f64>()
     }
 
+    /// Moves to the uncontrolled heading of the first hop of a trial.
+    pub(crate) fn begin_headings(&mut self, trial: u64) {
+        self.headings.set_stream(trial);
+        self.headings.set_word_pos(HEADINGS * WORDS_PER_BLOCK);
+    }
+
+    /// The uncontrolled heading of the next hop, as a share of a whole turn in [0, 1).
+    pub(crate) fn heading(&mut self) -> f64 {
+        self.headings.random::<f64>()
+    }
+
     /// Moves to the draws of a trial's height field; returns a source of uniforms in [0, 1).
     pub(crate) fn height_field(&mut self, trial: u64) -> impl FnMut() -> f64 + '_ {
         self.source.set_stream(trial);
@@ -139,6 +157,8 @@ mod tests {
         let biases = draws.biases(17, Distribution::Normal);
         draws.begin_rows(17);
         let rows = [draws.row(), draws.row()];
+        draws.begin_headings(17);
+        let headings = [draws.heading(), draws.heading()];
         draws.begin(17);
         for known in &all {
             let drift = draws.hop(Wanted { drift: true, ..Wanted::default() });
@@ -146,6 +166,8 @@ mod tests {
         }
         draws.begin_rows(17);
         assert_eq!((draws.biases(17, Distribution::Normal), [draws.row(), draws.row()]), (biases, rows));
+        draws.begin_headings(17);
+        assert!([draws.heading(), draws.heading()] == headings && headings[0] != headings[1] && headings[0] != rows[0]);
         draws.begin(18);
         assert_ne!(draws.hop(ALL), all[0]);
         draws.begin_rows(18);

@@ -17,6 +17,8 @@ pub(crate) struct Errors {
     uncertainty: Uncertainty,
     wanted: Wanted,
     changes: Changes,
+    /// Whether every heading is as likely as any other.
+    any_heading: bool,
 }
 
 /// What the errors change in a command.
@@ -110,7 +112,14 @@ impl Errors {
             heading: changes_heading,
             for_the_trial: speed_bias || angle_bias || heading_bias,
         };
-        Self { uncertainty, wanted, changes }
+        Self { uncertainty, wanted, changes, any_heading: false }
+    }
+
+    /// The errors of a robot whose heading is not controlled: that of every hop is anywhere on the circle, as likely as anywhere else,
+    /// whatever was commanded. Errors of the heading have no effect.
+    pub(crate) fn with_any_heading(uncertainty: Uncertainty) -> Self {
+        let of_command = Self::new(uncertainty, false);
+        Self { changes: Changes { direction: true, heading: true, ..of_command.changes }, any_heading: true, ..of_command }
     }
 
     /// Moves to the first hop of a trial; returns the errors that last for all of it.
@@ -124,13 +133,20 @@ impl Errors {
         if self.uncertainty.measured.is_some() {
             draws.begin_rows(trial);
         }
+        if self.any_heading {
+            draws.begin_headings(trial);
+        }
         biases
     }
 
     /// The errors of the next hop.
     pub(crate) fn draw(&self, draws: &mut TrialDraws, biases: &Biases) -> HopErrors {
         let row = self.uncertainty.measured.as_ref().map(|measured| measured.row(draws.row()));
-        self.of_hop(&draws.hop(self.wanted), biases, row)
+        let mut errors = self.of_hop(&draws.hop(self.wanted), biases, row);
+        if self.any_heading {
+            errors.heading_rad = std::f64::consts::TAU * draws.heading();
+        }
+        errors
     }
 
     /// The errors of a fixed draw.

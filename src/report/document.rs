@@ -43,6 +43,8 @@ pub enum DocumentKind {
     SimulateTravel,
     /// Trials of a mission over several targets: [`TargetsSimulateAnswer`](super::TargetsSimulateAnswer).
     SimulateTargets,
+    /// Trials of a robot whose heading is not controlled: [`DriftAnswer`](super::DriftAnswer).
+    SimulateDrift,
     /// An experiment with trials: [`ExperimentAnswer`](super::ExperimentAnswer).
     SimulateExperiment,
     /// The least capability: [`RequireAnswer`](super::RequireAnswer).
@@ -75,7 +77,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// All kinds.
-    pub const ALL: [Self; 31] = [
+    pub const ALL: [Self; 32] = [
         Self::Hop,
         Self::HopMesh,
         Self::Check,
@@ -93,6 +95,7 @@ impl DocumentKind {
         Self::SimulateLegs,
         Self::SimulateTravel,
         Self::SimulateTargets,
+        Self::SimulateDrift,
         Self::SimulateExperiment,
         Self::Require,
         Self::Trade,
@@ -129,6 +132,7 @@ impl DocumentKind {
             Self::SimulateLegs => "simulate-legs",
             Self::SimulateTravel => "simulate-travel",
             Self::SimulateTargets => "simulate-targets",
+            Self::SimulateDrift => "simulate-drift",
             Self::SimulateExperiment => "simulate-experiment",
             Self::Require => "require",
             Self::Trade => "trade",

@@ -76,6 +76,7 @@ const CHOICES: [&str; 4] =
 const RELIABILITY_USES: [&str; 3] = [ReliabilityUse::ALL[0].name(), ReliabilityUse::ALL[1].name(), ReliabilityUse::ALL[2].name()];
 const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const DISTRIBUTIONS: [&str; 2] = [Distribution::ALL[0].name(), Distribution::ALL[1].name()];
+const HEADINGS: [&str; 2] = super::drift::HEADINGS;
 const CONES: [&str; 6] = [
     ConeKind::ALL[0].name(),
     ConeKind::ALL[1].name(),
@@ -94,7 +95,7 @@ const ROUTES: [&str; 2] = [Route::ALL[0].name(), Route::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 128] = [
+pub const CATALOGUE: [Key; 131] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -514,13 +515,26 @@ pub const CATALOGUE: [Key; 128] = [
         "uncertainty",
         "hop_limit",
         Kind::Count { min: 1, max: 1_000_000 },
-        "hops of a trial at most; absent: twice the planned ones and ten more",
+        "hops of a trial at most; absent: twice the planned ones and ten more; where the heading is uncontrolled, the hops of every trial",
     ),
     key(
         "uncertainty",
         "policy",
         Kind::Word(&POLICIES),
         "open-loop: planned commands, wherever the robot is; replan: replanned after every landing; absent: replan",
+    ),
+    key(
+        "uncertainty",
+        "heading",
+        Kind::Word(&HEADINGS),
+        "uncontrolled: trials hop in any direction, each as likely as any other, without a plan or goal, on a dem; absent: controlled",
+    ),
+    key("uncertainty", "takeoff_speed_m_s", SPEED, "commanded take-off speed of every hop where the heading is uncontrolled, m/s"),
+    key(
+        "uncertainty",
+        "takeoff_angle_deg",
+        Kind::Number { min: 0.0, max: 90.0 },
+        "commanded take-off angle over the horizontal of every hop where the heading is uncontrolled, degrees",
     ),
     key("uncertainty", "trials", Kind::Count { min: 1, max: MOST }, "how many trials; absent: 10000"),
     key("uncertainty", "seed", Kind::Count { min: 0, max: MOST }, "seed of all draws; absent: 0"),

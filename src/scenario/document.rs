@@ -193,8 +193,9 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         _ => [None, None],
     };
     let [start_in_space, goal_in_space] = in_space;
-    // A mission over targets has no goal.
-    let goal = ends.as_ref().map(|[_, goal]| goal).filter(|_| scenario.mission.is_none());
+    // A mission over targets and a robot that cannot steer have no goal.
+    let drifts = scenario.uncertainty.as_ref().is_some_and(|keys| keys.drift.is_some());
+    let goal = ends.as_ref().map(|[_, goal]| goal).filter(|_| scenario.mission.is_none() && !drifts);
     object([
         ("dem", dem),
         ("mesh", mesh),
@@ -327,13 +328,16 @@ fn drive(DriveKeys { rover, travel }: &DriveKeys) -> Value {
 }
 
 fn uncertainty(trials: &UncertaintyKeys, named: &dyn Fn(&std::path::Path) -> String) -> Value {
-    let errors = &trials.errors;
+    let (errors, drift) = (&trials.errors, trials.drift.as_ref());
+    let hop_limit = drift.map(|command| command.hops).or(trials.hop_limit);
+    // Without a goal there is no policy and no tolerance.
+    let of_goal = |value: Value| drift.is_none().then_some(value);
     object([
         ("takeoff_speed_sigma_m_s", Some(errors.takeoff_speed_sigma_m_s.into())),
         ("takeoff_speed_sigma_fraction", Some(errors.takeoff_speed_sigma_fraction.into())),
         ("takeoff_angle_sigma_deg", Some(errors.takeoff_angle_sigma.written_degrees().into())),
-        ("heading_sigma_deg", Some(errors.heading_sigma.written_degrees().into())),
-        ("position_sigma_m", Some(errors.position_sigma_m.into())),
+        ("heading_sigma_deg", of_goal(errors.heading_sigma.written_degrees().into())),
+        ("position_sigma_m", of_goal(errors.position_sigma_m.into())),
         ("drift_along_sigma_m", Some(errors.drift_along_sigma_m.into())),
         ("drift_across_sigma_m", Some(errors.drift_across_sigma_m.into())),
         ("friction_sigma", Some(errors.friction_sigma.into())),
@@ -341,12 +345,15 @@ fn uncertainty(trials: &UncertaintyKeys, named: &dyn Fn(&std::path::Path) -> Str
         ("height_correlation_m", Some(errors.height_correlation_m.into())),
         ("takeoff_speed_bias_sigma_fraction", Some(errors.takeoff_speed_bias_sigma_fraction.into())),
         ("takeoff_angle_bias_sigma_deg", Some(errors.takeoff_angle_bias_sigma.written_degrees().into())),
-        ("heading_bias_sigma_deg", Some(errors.heading_bias_sigma.written_degrees().into())),
+        ("heading_bias_sigma_deg", of_goal(errors.heading_bias_sigma.written_degrees().into())),
         ("distribution", Some(errors.distribution.name().into())),
         ("errors", trials.errors_file.as_deref().map(|path| named(path).into())),
-        ("goal_tolerance_m", Some(trials.goal_tolerance_m.into())),
-        ("hop_limit", trials.hop_limit.map(Value::from)),
-        ("policy", Some(trials.policy.name().into())),
+        ("goal_tolerance_m", of_goal(trials.goal_tolerance_m.into())),
+        ("hop_limit", hop_limit.map(Value::from)),
+        ("policy", of_goal(trials.policy.name().into())),
+        ("heading", drift.map(|_| "uncontrolled".into())),
+        ("takeoff_speed_m_s", drift.map(|command| command.takeoff_speed_m_s.into())),
+        ("takeoff_angle_deg", drift.map(|command| command.takeoff_angle.written_degrees().into())),
         ("trials", Some(trials.trials.into())),
         ("seed", Some(trials.seed.into())),
     ])

@@ -364,6 +364,11 @@ impl Entries {
         route && self.text("terrain", "dem").is_some() && self.text("robot", "file").is_some()
     }
 
+    /// Whether the keys say that the heading is not controlled, so that trials follow no path.
+    pub fn ask_for_drift(&self) -> bool {
+        super::drift::is_uncontrolled(self)
+    }
+
     /// Groups of faces; none if they were not given.
     pub(super) fn face_groups(&self, table: &str, name: &str) -> FaceGroups {
         self.value(table, name).and_then(face_groups).unwrap_or_default()

@@ -7,6 +7,7 @@ mod catalogue;
 mod contact;
 mod derating;
 mod document;
+mod drift;
 mod drive;
 mod entries;
 mod face_groups;

@@ -170,6 +170,10 @@ fn map_ends(entries: &mut Entries, kind: &str) -> Option<[MapPlace; 2]> {
     // If both are missing, one sentence is enough.
     let start = map_place(entries, "start", kind)?;
     let has_goal = ["goal_m", "goal_lonlat_deg"].into_iter().any(|name| entries.value("terrain", name).is_some());
+    // A robot that cannot steer has no goal.
+    if super::drift::is_uncontrolled(entries) && !has_goal {
+        return Some([start, start]);
+    }
     // A mission over targets has no goal: its first target stands for it.
     if let Some(target) = super::mission::targets(entries).first().filter(|_| !has_goal) {
         return Some([start, *target]);

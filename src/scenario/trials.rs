@@ -9,7 +9,7 @@ use crate::{
     graph::{ReliabilityOptions, ReliabilityUse, RiskModel, TakeoffScatter},
     ground::DemGround,
     quantity::Angle,
-    uncertainty::{Distribution, MeasuredErrors, Policy, TrialOptions, Uncertainty, UncertaintyProblem},
+    uncertainty::{Distribution, DriftCommand, MeasuredErrors, Policy, TrialOptions, Uncertainty, UncertaintyProblem},
 };
 
 /// The keys of `[uncertainty]`, with defaults for absent ones.
@@ -29,6 +29,8 @@ pub struct UncertaintyKeys {
     pub trials: u64,
     /// The seed of all draws.
     pub seed: u64,
+    /// The command of every hop of a robot whose heading is not controlled; `None` where it is.
+    pub drift: Option<DriftCommand>,
 }
 
 impl Default for UncertaintyKeys {
@@ -42,6 +44,7 @@ impl Default for UncertaintyKeys {
             policy: Policy::OpenLoop,
             trials: 10_000,
             seed: 0,
+            drift: None,
         }
     }
 }
@@ -111,6 +114,7 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
         policy: super::read::find(&Policy::ALL, Policy::name, entries.text("uncertainty", "policy")).unwrap_or(Policy::Replan),
         trials: entries.count("uncertainty", "trials").unwrap_or(absent.trials),
         seed: entries.count("uncertainty", "seed").unwrap_or(absent.seed),
+        drift: super::drift::drift(entries, terrain),
     };
     let on_a_map = is_on_a_map(terrain);
     for problem in keys.errors.problems_of_deviations(on_a_map) {

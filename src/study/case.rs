@@ -65,6 +65,12 @@ fn derated_for(scenario: &Scenario, commands: Commands) -> Option<Scenario> {
     Some(Scenario { hopper: commands.hopper(&derated.hopper), ..derated })
 }
 
+/// Refuses a robot that cannot follow a path.
+fn controlled(scenario: &Scenario) -> Result<(), CaseError> {
+    let drifts = scenario.uncertainty.as_ref().is_some_and(|keys| keys.drift.is_some());
+    if drifts { Err(CaseError::Uncontrolled) } else { Ok(()) }
+}
+
 /// Why a scenario gives no case, or a case no answer.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -121,6 +127,12 @@ pub enum CaseError {
         /// What is wanted, with its verb.
         question: &'static str,
     },
+    /// A robot whose heading is not controlled, where a path is asked for.
+    #[error(
+        "found uncertainty.heading = \"uncontrolled\", with which no path can be followed, expected it for trials alone: remove heading, \
+         takeoff_speed_m_s and takeoff_angle_deg, and give terrain.goal_m"
+    )]
+    Uncontrolled,
     /// A question about targets without any.
     #[error("found no [mission], expected mission.targets_m")]
     NoTargets,
@@ -153,12 +165,14 @@ impl Case {
         base: &Path,
         commands: Commands,
     ) -> Result<Survey, CaseError> {
+        controlled(scenario)?;
         let hopper = commands.hopper(&scenario.hopper);
         Ok(Survey::of(&Scenario { hopper, ..scenario.clone() }, terrain, base)?)
     }
 
     /// The case over its terrain, which may have been read for another one, with the ground beside the line where hops leave it.
     pub(super) fn surveyed(survey: &Survey, scenario: Scenario, base: &Path, commands: Commands) -> Result<Self, CaseError> {
+        controlled(&scenario)?;
         let hopper = commands.hopper(&scenario.hopper);
         let whole = Scenario { hopper, ..scenario.clone() };
         if scenario.derating.is_none() {
@@ -207,6 +221,7 @@ impl Case {
     /// # Errors
     /// As [`Case::new`].
     pub fn over(survey: &Survey, scenario: Scenario, base: &Path, commands: Commands) -> Result<Self, CaseError> {
+        controlled(&scenario)?;
         let (scenario, of_errors) = with_measured_errors(scenario, base)?;
         if scenario.terrain.is_none() {
             return Err(CaseError::NoTerrain);

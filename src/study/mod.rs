@@ -136,7 +136,7 @@ pub use record::{CaseRecord, checksums, comparison_document, raster_files, scena
 pub use require::{RangeProblem, RequireError, Required, Requirement, require};
 pub use schema::SchemaKind;
 pub use sense::TrialGround;
-pub use simulate::{PartsProblem, SimulateError, SimulateOptions, Simulated, Trials, simulate};
+pub use simulate::{Drift, Drifted, PartsProblem, SimulateError, SimulateOptions, Simulated, Trials, simulate};
 pub use sites::{Candidates, SitesQuestion, SitesStudy, sites};
 pub use stance::{ContactsError, StanceError, StanceQuestion, StanceTerrain, Stood, contacts_of, stand};
 #[cfg(feature = "plot")]

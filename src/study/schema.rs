@@ -6,10 +6,11 @@ use serde_json::{Value, json};
 use crate::{
     arena::ArenaKeys,
     report::{
-        ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, LegsMapAnswer,
-        LegsPlanAnswer, LegsSimulateAnswer, LegsTradeAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer,
-        MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer, SizeAnswer,
-        StanceAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+        ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, DriftAnswer, ExperimentAnswer, FanAnswer, HopAnswer,
+        LegsMapAnswer, LegsPlanAnswer, LegsSimulateAnswer, LegsTradeAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer,
+        MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer,
+        SizeAnswer, StanceAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer,
+        TravelSimulateAnswer,
     },
     scenario::{robot_schema, scenario_schema},
 };
@@ -69,6 +70,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::SimulateLegs => derived::<LegsSimulateAnswer>(),
         DocumentKind::SimulateTravel => derived::<TravelSimulateAnswer>(),
         DocumentKind::SimulateTargets => derived::<TargetsSimulateAnswer>(),
+        DocumentKind::SimulateDrift => derived::<DriftAnswer>(),
         DocumentKind::SimulateExperiment => derived::<ExperimentAnswer>(),
         DocumentKind::Require => derived::<RequireAnswer>(),
         DocumentKind::Trade => derived::<TradeAnswer>(),

@@ -4,6 +4,7 @@ use super::{Extremes, Prepared, constant_gravity_warnings};
 use crate::{
     chain::{GroundForm, PolygonalChain, Station},
     graph::ReliabilityUse,
+    ground::DemGround,
     path::{Hop, HopPath},
     quantity::format_number,
     scenario::{Scenario, TerrainSource},
@@ -40,6 +41,15 @@ impl TrialGround {
             journey_m: prepared.start.zip(prepared.goal).map(|(start, goal)| straight_m(geometry, [start, goal])),
             hops,
         }
+    }
+
+    /// That of a whole map, with plans of this many hops to several goals, or without any. The coefficients of a friction raster are not
+    /// looked through.
+    pub(super) fn of_map(ground: &DemGround, hops: usize) -> Self {
+        let bounds = ground.terrain().dem().bounds();
+        let constant = ground.constant_friction().map(FrictionCone::coefficient);
+        let of_raster = ground.terrain().overlays().friction().map(|_| f64::INFINITY);
+        Self { friction_max: of_raster.or(constant), extent_m: (bounds.max - bounds.min).norm(), journey_m: None, hops }
     }
 }
 
@@ -126,6 +136,23 @@ impl Scenario {
         })
     }
 
+    /// Warnings about trials without a plan: settings that they do not feel, deviations beyond sense.
+    pub(super) fn drift_warnings(&self, ground: &TrialGround) -> Vec<String> {
+        self.unfelt_friction(ground).into_iter().chain(self.beyond_sense(ground)).collect()
+    }
+
+    /// A warning where an error of the friction changes nothing.
+    fn unfelt_friction(&self, ground: &TrialGround) -> Option<String> {
+        let sigma = self.uncertainty.as_ref().map_or(0.0, |keys| keys.errors.friction_sigma);
+        (sigma > 0.0 && ground.friction_max.is_none()).then(|| {
+            format!(
+                "uncertainty.friction_sigma = {} has no effect: the limits of this ground are stated as angles, and no friction coefficient \
+                 decides a contact; leave it out, or give the ground a friction coefficient",
+                format_number(sigma)
+            )
+        })
+    }
+
     /// Warnings about trials under these policies: settings that they do not feel, deviations beyond sense, no errors at all.
     pub fn trial_warnings(&self, policies: &[Policy], ground: &TrialGround) -> Vec<String> {
         let keys = self.uncertainty.clone().unwrap_or_default();
@@ -143,13 +170,7 @@ impl Scenario {
                 format_number(position_sigma_m)
             ));
         }
-        if felt.friction_sigma != friction_sigma {
-            warnings.push(format!(
-                "uncertainty.friction_sigma = {} has no effect: the limits of this ground are stated as angles, and no friction coefficient \
-                 decides a contact; leave it out, or give the ground a friction coefficient",
-                format_number(friction_sigma)
-            ));
-        }
+        warnings.extend(self.unfelt_friction(ground));
         if felt.is_none() && !keys.errors.is_none() {
             warnings.push(
                 "no error that is given has an effect on these trials, so that every trial flies the plan exactly and the rate has no meaning"

@@ -7,6 +7,7 @@ use std::{
 
 use sha2::{Digest, Sha256};
 
+use super::DriftCommand;
 use crate::{
     ballistics::TakeoffChoice,
     chain::Station,
@@ -31,6 +32,8 @@ pub struct Mission {
     pub(super) planned_over: Option<Arc<DemGround>>,
     /// The mission that follows from the goal on.
     next: Option<Box<Self>>,
+    /// The command of every hop, of a robot whose heading is not controlled.
+    pub(super) drift: Option<DriftCommand>,
 }
 
 /// The ground of the trials.
@@ -79,17 +82,36 @@ impl Mission {
             replanning: None,
             planned_over: None,
             next: None,
+            drift: None,
         }
     }
 
     /// A path over a DEM, in any direction: flights follow their heading.
     pub const fn over_dem(ground: DemGround, path: HopPath, start: ContactPoint, goal: ContactPoint) -> Self {
-        Self { ground: MissionGround::Map(ground), path, start, goal, replanning: None, planned_over: None, next: None }
+        Self {
+            ground: MissionGround::Map(ground),
+            path,
+            start,
+            goal,
+            replanning: None,
+            planned_over: None,
+            next: None,
+            drift: None,
+        }
     }
 
     /// A path over a mesh, under overhangs and through caves: flights follow their heading, up to the first facet that they meet.
     pub const fn over_mesh(ground: MeshGround, path: HopPath, start: ContactPoint, goal: ContactPoint) -> Self {
-        Self { ground: MissionGround::Mesh(ground), path, start, goal, replanning: None, planned_over: None, next: None }
+        Self {
+            ground: MissionGround::Mesh(ground),
+            path,
+            start,
+            goal,
+            replanning: None,
+            planned_over: None,
+            next: None,
+            drift: None,
+        }
     }
 
     /// The same mission, and the one that follows from its goal on.
@@ -101,9 +123,14 @@ impl Mission {
         Self { next: Some(Box::new(later)), ..self }
     }
 
+    /// The same start, from where every hop has this command and any heading.
+    pub(super) fn drifting(self, command: DriftCommand) -> Self {
+        Self { drift: Some(command), ..self }
+    }
+
     /// The planned hops, with those of the missions that follow.
     pub(super) fn hops(&self) -> usize {
-        self.path.hops.len() + self.next.as_ref().map_or(0, |next| next.hops())
+        self.drift.map_or(self.path.hops.len(), |command| command.hops as usize) + self.next.as_ref().map_or(0, |next| next.hops())
     }
 
     /// SHA-256 of all that trials depend on, besides errors and options, in hexadecimal: equal for the same mission and the same version
@@ -145,6 +172,9 @@ impl Mission {
         }
         if let Some(ground) = &self.planned_over {
             let _ = limits_text(&mut digest, ground);
+        }
+        if let Some(command) = &self.drift {
+            let _ = write!(digest, "{command:?}");
         }
         if let Some(next) = &self.next {
             let _ = write!(digest, "{}", next.digest());

@@ -43,6 +43,7 @@
 //! ```
 
 mod density;
+mod drift;
 mod exact_sum;
 pub mod experiments;
 mod hop_success;
@@ -72,6 +73,7 @@ pub use crate::{
     ground::LiftoffVelocity,
 };
 pub use density::{DensestCell, RestDensity};
+pub use drift::DriftCommand;
 pub use legs::{LegsMission, LegsOutcome, LegsSummary};
 pub use mission::{MeshAims, Mission};
 pub use options::{MissionPoint, Observer, SimulationError, TrialOptions};

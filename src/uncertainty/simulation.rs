@@ -36,7 +36,7 @@ const STRETCH: u64 = 50;
 /// A mission prepared for repeated flights.
 #[derive(Debug)]
 pub struct Simulation {
-    mission: Mission,
+    pub(super) mission: Mission,
     pub(super) uncertainty: Uncertainty,
     pub(super) ground_and_plan: GroundAndPlan,
 }
@@ -179,6 +179,9 @@ impl Simulation {
     }
 
     fn hop_limit(&self, options: &TrialOptions) -> u32 {
+        if let Some(command) = self.mission.drift {
+            return command.hops;
+        }
         options.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(self.mission.hops()))
     }
 
@@ -273,11 +276,14 @@ impl Simulation {
     ) -> Result<(Statistics, Vec<Trajectory>), SimulationError> {
         let meter = Meter::with_total(progress, Stage::Trials, options.trials);
         meter.report(Detail::None)?;
+        let drifts = self.mission.drift.is_some();
+        let errors = self.uncertainty.clone();
         let rules = Rules {
-            errors: Errors::new(self.uncertainty.clone(), options.policy == Policy::Replan),
-            policy: options.policy,
+            errors: if drifts { Errors::with_any_heading(errors) } else { Errors::new(errors, options.policy == Policy::Replan) },
+            policy: if drifts { Policy::OpenLoop } else { options.policy },
             hop_limit: self.hop_limit(options),
-            goal_tolerance_m: options.goal_tolerance_m,
+            // Wherever a robot without a goal rests after its hops.
+            goal_tolerance_m: if drifts { f64::INFINITY } else { options.goal_tolerance_m },
             tank: Tank::of(ground.hopper().limits()),
         };
         let keep_records = observer.wants_records();

@@ -6,10 +6,11 @@ use std::{collections::BTreeSet, path::Path, sync::OnceLock};
 
 use chta::arena::ArenaKeys;
 use chta::report::{
-    ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer,
-    LegsMapAnswer, LegsPlanAnswer, LegsSimulateAnswer, LegsTradeAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer, MeshMapAnswer,
-    MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer, SizeAnswer,
-    StanceAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer, TravelSimulateAnswer,
+    ArenaAnswer, CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, DriftAnswer, ExperimentAnswer, FanAnswer,
+    HopAnswer, LegsMapAnswer, LegsPlanAnswer, LegsSimulateAnswer, LegsTradeAnswer, MapAnswer, MeshCheckAnswer, MeshHopAnswer,
+    MeshMapAnswer, MeshPlanAnswer, MeshSimulateAnswer, PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, SitesAnswer,
+    SizeAnswer, StanceAnswer, TargetsAnswer, TargetsSimulateAnswer, TradeAnswer, TravelAnswer, TravelMapAnswer,
+    TravelSimulateAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
 use serde::{Serialize, de::DeserializeOwned};
@@ -170,6 +171,7 @@ fn rewritten(kind: DocumentKind, text: &str) -> Result<String, DocumentProblem> 
         DocumentKind::SimulateTravel => of::<TravelSimulateAnswer>(text),
         DocumentKind::Simulate => of::<SimulateAnswer>(text),
         DocumentKind::SimulateMesh => of::<MeshSimulateAnswer>(text),
+        DocumentKind::SimulateDrift => of::<DriftAnswer>(text),
         DocumentKind::SimulateExperiment => of::<ExperimentAnswer>(text),
         DocumentKind::Require => of::<RequireAnswer>(text),
         DocumentKind::Trade => of::<TradeAnswer>(text),

@@ -27,6 +27,7 @@ mod clearance;
 mod columns_table;
 mod command_steps;
 mod docs_commands;
+mod drift;
 mod execute;
 mod fly;
 mod footprint;

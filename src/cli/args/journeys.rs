@@ -502,6 +502,11 @@ impl SimulateArgs {
         Ok(())
     }
 
+    /// Checks the raster of where trials rest.
+    pub(crate) fn check_density(&self) -> Result<(), Failure> {
+        density::check_raster(self)
+    }
+
     /// Checks the options of trials.
     pub(crate) fn check(&self, case: &Case) -> Result<(), Failure> {
         self.check_half_width()?;

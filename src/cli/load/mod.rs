@@ -2,6 +2,7 @@
 
 mod arena;
 mod bare;
+mod drift;
 mod ends;
 mod mesh_hop;
 mod mesh_plan;
@@ -27,6 +28,7 @@ use serde::Serialize;
 
 pub(crate) use arena::load_arena;
 pub(crate) use bare::{Bare, load_bare, load_map};
+pub(crate) use drift::load_drift;
 pub(crate) use ends::EndOptions;
 pub(crate) use mesh_hop::{MeshHopInput, load_mesh_hop};
 pub(crate) use mesh_plan::{MeshPlanInput, is_over_mesh, load_mesh_plan, load_mesh_scenario};

@@ -25,7 +25,6 @@ use crate::{
     scenario::UncertaintyKeys,
     study::{Extremes, TrialGround, constant_gravity_warnings, objective::short_hops, sense::unplanned_bounces},
     uncertainty::{Mission, Policy, Simulation},
-    world::FrictionCone,
 };
 
 /// What marks a post without a predecessor in [`MapStudy::predecessors`]: it was not reached, or has no elevation.
@@ -256,12 +255,8 @@ impl PreparedMap {
 
     /// The ground as the warnings about trials see it.
     fn trial_ground(&self, paths: &[Option<HopPath>]) -> TrialGround {
-        let bounds = self.dem().bounds();
         let hops = paths.iter().flatten().map(|path| path.hops.len()).max().unwrap_or(0);
-        let constant = self.ground.constant_friction().map(FrictionCone::coefficient);
-        // The coefficients of a raster are not looked through.
-        let of_raster = self.ground.terrain().overlays().friction().map(|_| f64::INFINITY);
-        TrialGround { friction_max: of_raster.or(constant), extent_m: (bounds.max - bounds.min).norm(), journey_m: None, hops }
+        TrialGround::of_map(&self.ground, hops)
     }
 
     /// Flies the path to every reachable goal many times, and in the fixed trials of an estimate if there are errors: a robot that replans goes to the goal of its path, whatever others are nearer.

@@ -21,6 +21,7 @@
 mod ask;
 mod case;
 mod draft;
+mod drift;
 mod error;
 mod facets;
 mod map;
@@ -36,6 +37,7 @@ pub use ask::{
 };
 pub use case::OpenCase;
 pub use draft::{Draft, Wording};
+pub use drift::OpenDrift;
 pub use error::{AskError, OpenError};
 pub use facets::OpenFacets;
 pub use map::OpenMap;

@@ -1,6 +1,7 @@
 //! How reliably a planned path is flown.
 
 mod advice;
+mod drift;
 mod flyer;
 mod parts;
 #[cfg(feature = "plot")]
@@ -13,6 +14,7 @@ use std::{
 };
 
 use advice::advice;
+pub use drift::{Drift, Drifted};
 pub(super) use flyer::Flyer;
 pub use parts::PartsProblem;
 pub(super) use parts::merged;
@@ -140,6 +142,19 @@ pub(super) fn by_policy(
     Ok((summaries, tallies))
 }
 
+/// Counts of where trials over a DEM rest, of which none is flown yet. `area`: a file of zones whose share is asked for.
+fn density_over(ground: &DemGround, hops: usize, area: Option<&Path>) -> Result<RestDensity, SimulateError> {
+    let dem = ground.terrain().dem();
+    let read = |path: &Path| {
+        read_keep_out(path, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|error| match error {
+            TerrainError::Overlay { path, problem, .. } => TerrainError::Overlay { what: "area", path, problem },
+            other => other,
+        })
+    };
+    let area = area.map(read).transpose().map_err(SimulateError::Area)?;
+    Ok(RestDensity::over(ground, hops, area))
+}
+
 /// Flies the trials of a plan under the errors of its scenario. Without a path nothing is flown, and the answer says so.
 ///
 /// # Errors
@@ -182,16 +197,8 @@ impl Trials {
     /// [`SimulateError::Dem`] and [`SimulateError::Area`].
     pub fn density(&self, area: Option<&Path>) -> Result<Option<RestDensity>, SimulateError> {
         let Some(ground) = dem_ground(&self.planned.case)? else { return Ok(None) };
-        let dem = ground.terrain().dem();
-        let read = |path: &Path| {
-            read_keep_out(path, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|error| match error {
-                TerrainError::Overlay { path, problem, .. } => TerrainError::Overlay { what: "area", path, problem },
-                other => other,
-            })
-        };
-        let area = area.map(read).transpose().map_err(SimulateError::Area)?;
         let hops = self.planned.path.as_ref().map_or(0, |path| path.hops.len());
-        Ok(Some(RestDensity::over(&ground, hops, area)))
+        density_over(&ground, hops, area).map(Some)
     }
 
     /// Flies those of a range of numbers under the scenario's policy, as a tally that merges with those of other ranges: the trials of a

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::Simulated;
+use super::{Drifted, Simulated};
 use crate::{
     figure::{
         Caption, ConvergencePoint, DensityFigure, ErrorQuantiles, FigureError, Flight, FlownFigure, FlownTrial, LandingBoxes,
@@ -11,7 +11,7 @@ use crate::{
     },
     path::Hop,
     quantity::{ChainPoint, MapPoint},
-    report::DensityRecord,
+    report::{DensityRecord, DriftAnswer},
     scenario::Scenario,
     uncertainty::{Distribution, HopRecord, LandingSummary, RestDensity, Summary, TrialOutcome, Uncertainty, Wilson},
 };
@@ -52,6 +52,31 @@ impl Simulated {
         let mut caption = caption(&self.planned.case.scenario, std::iter::once(summary));
         caption.lines.extend(DensityRecord::new(density).lines());
         Some(draw_rests(density, caption, path))
+    }
+}
+
+impl Drifted {
+    /// Where the trials end on the map, about the start.
+    ///
+    /// # Errors
+    /// [`FigureError`].
+    pub fn density_map(&self, density: &RestDensity) -> Result<Picture, FigureError> {
+        let keys = self.scenario.uncertainty.clone().unwrap_or_default();
+        let DriftAnswer { takeoff_speed_m_s, takeoff_angle_deg, hops, trials, .. } = &self.answer;
+        let [low, high] = trials.success_rate_ci95;
+        let mut lines = vec![
+            format!(
+                "{hops} hops in any direction, each at {takeoff_speed_m_s} m/s and {takeoff_angle_deg} deg; seed {}",
+                keys.seed
+            ),
+            format_errors(&keys.errors),
+            format!(
+                "{} of {} trials fly all hops and rest after each, {:.4} (95 % interval {low:.4} to {high:.4})",
+                trials.outcomes.reached, trials.trials, trials.success_rate
+            ),
+        ];
+        lines.extend(DensityRecord::new(density).lines());
+        draw_rests(density, Caption { title: self.scenario.title.clone().unwrap_or_default(), lines }, vec![self.start])
     }
 }
 

@@ -1,5 +1,6 @@
 //! `chta simulate`: how reliably the planned path is flown.
 
+mod drift;
 mod experiment;
 mod legs;
 mod over_mesh;
@@ -19,7 +20,7 @@ use crate::cli::{
     hints::further_means,
     inputs,
     landings::RowFile,
-    load::{load_journey, load_mesh_plan, plan_to_fly},
+    load::{load_drift, load_journey, load_mesh_plan, plan_to_fly},
     output::{self, Pending},
     progress::Progress,
     tallies, threads,
@@ -32,6 +33,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
     // Set before the terrain is read, since reading starts the threads.
     threads::start(args.answer.threads)?;
+    if let Some(open) = load_drift(&args.journey, &args.common, &args.search, &args.own_keys())? {
+        return drift::run(args, open);
+    }
     if let Some(input) = load_mesh_plan(&args.journey, &args.common, &args.search, Purpose::Simulate, &args.own_keys())? {
         return over_mesh::run(args, &input);
     }

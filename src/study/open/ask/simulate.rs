@@ -38,6 +38,15 @@ impl Draft {
                 ("until_half_width", "a number above 0 and below 0.5: 0.01 stops at a rate known to one in a hundred");
             return Err(AskError::Value { what, found: found.to_string(), expected });
         }
+        if let Some(drift) = self.drift()? {
+            refuse(
+                &[(options.tally, "a tally"), (options.compare, "both policies"), (self.result.is_some(), "a result")],
+                "a robot whose heading is not controlled follows no path",
+            )?;
+            let flown = drift.trials.fly(options, &mut (), progress)?;
+            let json = drift.record.document(DocumentKind::SimulateDrift, &flown.warnings, &flown.answer).to_json()?;
+            return Ok(Reply::new(DocumentKind::SimulateDrift, json, flown.answer.shows_success()));
+        }
         if let Some(open) = self.facets(Purpose::Simulate)? {
             return self.simulate_over_facets(&open, options, progress);
         }
