@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde_json::{Map, Value};
 
-use super::{Entries, ProblemKind, Route, Scenario, TerrainSource, values::number};
+use super::{Entries, Kind, ProblemKind, Route, Scenario, TerrainSource, values::number};
 use crate::{
     planner::{Amount, LayerTotals, Objective, TotalBudget},
     terrain::{LayerCondition, LayerCost, LayerRule, OutageLimit},
@@ -48,6 +48,24 @@ const COST_PER_CONTACT: &str = "cost_per_contact";
 const COST_PER_M: &str = "cost_per_m";
 const TOTAL_MAX: &str = "total_max";
 
+/// The kind of a key of a layer; `None` for an unknown one.
+pub fn kind_of_layer_key(name: &str) -> Option<Kind> {
+    let (key, _) = LAYER_KEYS.into_iter().find(|(key, _)| *key == name)?;
+    let from_zero = Kind::Number { min: 0.0, max: f64::MAX };
+    Some(match key {
+        "min" | "max" | "equals" => Kind::Number { min: f64::MIN, max: f64::MAX },
+        "outage_max_s" | COST_PER_CONTACT | COST_PER_M | TOTAL_MAX => from_zero,
+        "outage_hops_max" => Kind::Count { min: 0, max: u64::from(u32::MAX) },
+        "exempt_targets" => Kind::Flag,
+        _ => Kind::Text,
+    })
+}
+
+/// The keys of a layer, for a sentence.
+pub fn layer_keys() -> String {
+    LAYER_KEYS.map(|(key, _)| key).join(", ")
+}
+
 /// The words of `applies_to`.
 pub(super) const APPLIES_TO: [&str; 2] = ["contact", "flight"];
 
@@ -81,8 +99,7 @@ fn layer(name: &str, table: &toml::Table) -> Result<LayerKeys, (String, String)>
         (message, "rename the layer, such as [layer.sun]".to_owned())
     })?;
     if let Some(unknown) = table.keys().find(|key| LAYER_KEYS.iter().all(|(known, _)| known != key)) {
-        let keys = LAYER_KEYS.map(|(key, _)| key).join(", ");
-        return Err((format!("unknown key layer.{name}.{unknown}"), format!("the keys of a layer are {keys}")));
+        return Err((format!("unknown key layer.{name}.{unknown}"), format!("the keys of a layer are {}", layer_keys())));
     }
     let meaning = |key: &str| {
         let of_key = LAYER_KEYS.iter().find(|(known, _)| *known == key);

@@ -37,7 +37,7 @@ pub(crate) use entries::nearest_key;
 pub use entries::{Entries, Place};
 pub use file_kind::FileKind;
 pub use kind::Kind;
-pub use layers::LayerKeys;
+pub use layers::{LayerKeys, kind_of_layer_key, layer_keys};
 pub use legs::LegsKeys;
 pub use mesh_search::MeshSearch;
 pub use mission::MissionKeys;

@@ -66,7 +66,7 @@ fn derated_for(scenario: &Scenario, commands: Commands) -> Option<Scenario> {
 }
 
 /// Refuses a robot that cannot follow a path.
-fn controlled(scenario: &Scenario) -> Result<(), CaseError> {
+pub(super) fn controlled(scenario: &Scenario) -> Result<(), CaseError> {
     let drifts = scenario.uncertainty.as_ref().is_some_and(|keys| keys.drift.is_some());
     if drifts { Err(CaseError::Uncontrolled) } else { Ok(()) }
 }
@@ -173,6 +173,7 @@ impl Case {
     /// The case over its terrain, which may have been read for another one, with the ground beside the line where hops leave it.
     pub(super) fn surveyed(survey: &Survey, scenario: Scenario, base: &Path, commands: Commands) -> Result<Self, CaseError> {
         controlled(&scenario)?;
+        let survey = survey.under(&scenario)?;
         let hopper = commands.hopper(&scenario.hopper);
         let whole = Scenario { hopper, ..scenario.clone() };
         if scenario.derating.is_none() {
@@ -191,7 +192,7 @@ impl Case {
                 ground,
             });
         }
-        let mut case = Self::over(survey, scenario, base, commands)?;
+        let mut case = Self::over(&survey, scenario, base, commands)?;
         case.prepared.beside_line = survey.beside_line(&whole)?;
         let beside_line = case.prepared.beside_line.as_deref().map(|ground| Arc::new(planned_over(ground, &whole)));
         if let Some(prepared) = &mut case.derated {
@@ -222,6 +223,7 @@ impl Case {
     /// As [`Case::new`].
     pub fn over(survey: &Survey, scenario: Scenario, base: &Path, commands: Commands) -> Result<Self, CaseError> {
         controlled(&scenario)?;
+        let survey = survey.under(&scenario)?;
         let (scenario, of_errors) = with_measured_errors(scenario, base)?;
         if scenario.terrain.is_none() {
             return Err(CaseError::NoTerrain);

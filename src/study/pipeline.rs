@@ -1,6 +1,7 @@
 //! The pipeline from a scenario over terrain, chain and constraints to a chain ready for the hop test.
 
 use std::{
+    borrow::Cow,
     fmt::Write,
     fs::File,
     io::{self, Read},
@@ -254,6 +255,20 @@ impl Survey {
         Ok(Prepared { beside_line, ..self.prepare(scenario)? })
     }
 
+    /// The same terrain under the rules that a scenario gives its layers.
+    ///
+    /// # Errors
+    /// [`PipelineError::Terrain`].
+    pub(super) fn under(&self, scenario: &Scenario) -> Result<Cow<'_, Self>, PipelineError> {
+        let Surveyed::Slice { legs, overlays, dem } = &self.ground else { return Ok(Cow::Borrowed(self)) };
+        if overlays.has_rules_of(scenario) {
+            return Ok(Cow::Borrowed(self));
+        }
+        let overlays = Box::new(overlays.under(scenario)?);
+        let ground = Surveyed::Slice { legs: legs.clone(), overlays, dem: dem.clone() };
+        Ok(Cow::Owned(Self { ground, ..self.clone() }))
+    }
+
     /// The DEM that was sliced, with its overlays; `None` if the terrain is a mesh or a chain.
     pub(super) fn sliced(&self) -> Option<(SlicedDem, Overlays)> {
         match &self.ground {
@@ -466,6 +481,27 @@ impl Overlays {
         let overlays = terrain::Overlays::new(raster.transpose()?, keep_out.transpose()?);
         let overlays = overlays.with_keep_in(keep_in.transpose()?).with_layers(layers);
         Ok(Self { constant: friction(scenario), overlays: Arc::new(overlays) })
+    }
+
+    /// The same overlays with the rules that a scenario gives its layers, whose rasters are those that were read.
+    ///
+    /// # Errors
+    /// [`TerrainError::Overlay`], for what a rule asks of the values.
+    fn under(&self, scenario: &Scenario) -> Result<Self, TerrainError> {
+        let read = self.overlays.layers();
+        let of_rule = |layer: &Layer| {
+            let keys = scenario.layers.iter().find(|keys| keys.rule.name == layer.rule().name);
+            keys.map_or_else(|| Ok(layer.clone()), |keys| layer.under(keys.rule))
+        };
+        let layers = MapLayers::new(read.iter().map(of_rule).collect::<Result<_, _>>()?);
+        Ok(Self { constant: self.constant, overlays: Arc::new(self.overlays.as_ref().clone().with_layers(layers)) })
+    }
+
+    /// Whether its layers have the rules that a scenario gives them.
+    fn has_rules_of(&self, scenario: &Scenario) -> bool {
+        let is_same =
+            |layer: &Layer| scenario.layers.iter().all(|keys| keys.rule.name != layer.rule().name || keys.rule == *layer.rule());
+        self.overlays.layers().iter().all(is_same)
     }
 
     /// A whole DEM under these overlays.

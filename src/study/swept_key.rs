@@ -1,12 +1,15 @@
 //! A key of the scenario that is swept over evenly spaced values.
 
 use super::TradeError;
-use crate::scenario::{Key, Kind, fits, nearest_key};
+use crate::scenario::{Key, Kind, fits, kind_of_layer_key, layer_keys, nearest_key};
 
 /// A swept key of the scenario, and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweptKey {
-    key: &'static Key,
+    table: String,
+    /// Of a layer, `NAME.KEY`.
+    name: String,
+    kind: Kind,
     values: Vec<f64>,
 }
 
@@ -33,8 +36,15 @@ impl SweptKey {
         let Some(key) = Key::find(table, name) else {
             return Err(TradeError::UnknownKey { nearest: nearest_key(table, name), path });
         };
-        if !matches!(key.kind, Kind::Number { .. } | Kind::AngleOrUnlimited | Kind::CountOrAuto) {
-            return Err(TradeError::NotANumber { path, expected: key.kind.expected() });
+        let kind = match (key.kind, name.split_once('.')) {
+            (Kind::Layer, Some((_, own))) => match kind_of_layer_key(own) {
+                Some(kind) => kind,
+                None => return Err(TradeError::UnknownKey { nearest: format!("the keys of a layer are {}", layer_keys()), path }),
+            },
+            (kind, _) => kind,
+        };
+        if !matches!(kind, Kind::Number { .. } | Kind::AngleOrUnlimited | Kind::CountOrAuto | Kind::Count { .. }) {
+            return Err(TradeError::NotANumber { path, expected: kind.expected() });
         }
         let malformed = || TradeError::Malformed { path: path.clone(), found: range.to_owned() };
         let parts: Vec<&str> = range.split(':').map(str::trim).collect();
@@ -51,15 +61,26 @@ impl SweptKey {
             return Err(TradeError::Range { path, from, to });
         }
         let values = spread(from, to, steps);
-        if let Some(&value) = values.iter().find(|&&value| !fits(&typed(key, value), key.kind)) {
-            return Err(TradeError::Value { path, value, expected: key.kind.expected() });
+        if let Some(&value) = values.iter().find(|&&value| !fits(&typed(kind, value), kind)) {
+            return Err(TradeError::Value { path, value, expected: kind.expected() });
         }
-        Ok(Self { key, values })
+        let (table, name) = (table.to_owned(), name.to_owned());
+        Ok(Self { table, name, kind, values })
     }
 
-    /// The key.
-    pub const fn key(&self) -> &'static Key {
-        self.key
+    /// The key, `TABLE.KEY`.
+    pub fn path(&self) -> String {
+        format!("{}.{}", self.table, self.name)
+    }
+
+    /// Table and name of the key; of a layer, the name is `NAME.KEY`.
+    pub fn key(&self) -> (&str, &str) {
+        (&self.table, &self.name)
+    }
+
+    /// A value in the type that the key takes.
+    pub(super) fn typed(&self, value: f64) -> toml::Value {
+        typed(self.kind, value)
     }
 
     /// The values, in ascending order.
@@ -94,11 +115,11 @@ fn spread(from: f64, to: f64, steps: usize) -> Vec<f64> {
         .collect()
 }
 
-/// A value in the type that the scenario's key takes.
-pub(super) fn typed(key: &Key, value: f64) -> toml::Value {
-    match key.kind {
+/// A value in the type that a kind of key takes.
+fn typed(kind: Kind, value: f64) -> toml::Value {
+    match kind {
         #[expect(clippy::cast_possible_truncation, reason = "whole and within the range of counts, or refused as it is")]
-        Kind::CountOrAuto if value.fract() == 0.0 && value.abs() < 1e9 => toml::Value::Integer(value as i64),
+        Kind::CountOrAuto | Kind::Count { .. } if value.fract() == 0.0 && value.abs() < 1e9 => toml::Value::Integer(value as i64),
         _ => toml::Value::Float(value),
     }
 }
@@ -125,8 +146,27 @@ mod tests {
             let range = if matches!(key.kind, Kind::Number { max, .. } if max < 3.0) { "0.25:0.75:3" } else { "1:3:3" };
             let text = format!("{}={range}", key.path());
             let parsed = SweptKey::parse(&text);
-            let number = matches!(key.kind, Kind::Number { .. } | Kind::AngleOrUnlimited | Kind::CountOrAuto);
+            let number = matches!(key.kind, Kind::Number { .. } | Kind::AngleOrUnlimited | Kind::CountOrAuto | Kind::Count { .. });
             assert_eq!(parsed.is_ok(), number, "{text}: {parsed:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_a_layer_can_be_varied_and_its_words_cannot() {
+        let hops = SweptKey::parse("layer.sun.outage_hops_max=1:3:3").unwrap();
+        assert_eq!((hops.path().as_str(), hops.key()), ("layer.sun.outage_hops_max", ("layer", "sun.outage_hops_max")));
+        assert_eq!(hops.typed(2.0), toml::Value::Integer(2));
+        assert_eq!(SweptKey::parse("layer.sun.min=-1:1:3").unwrap().values(), [-1.0, 0.0, 1.0]);
+        for (refused, said) in [
+            ("layer.sun.raster=0:1:2", "cannot be varied"),
+            ("layer.sun.applies_to=0:1:2", "cannot be varied"),
+            ("layer.sun=0:1:2", "cannot be varied"),
+            ("layer.sun.mn=0:1:2", "the keys of a layer are raster, min, max"),
+            ("layer.sun.outage_max_s=-1:1:3", "a value is -1"),
+            ("layer.sun.outage_hops_max=1:2:3", "a value is 1.5"),
+        ] {
+            let error = SweptKey::parse(refused).unwrap_err().to_string();
+            assert!(error.contains(said), "{refused}: {error}");
         }
     }
 }

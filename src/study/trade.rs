@@ -5,12 +5,8 @@ use std::{collections::BTreeMap, ops::ControlFlow, path::Path};
 use rayon::prelude::*;
 
 use super::{
-    Case, CaseError, Commands, JourneyError, PipelineError, Survey, ask_the_same,
-    free_nodes::QuestionNodes,
-    journey,
-    physics::escape_warnings,
-    swept_key::{SweptKey, typed},
-    trade_free::free_row,
+    Case, CaseError, Commands, JourneyError, PipelineError, Survey, ask_the_same, free_nodes::QuestionNodes, journey,
+    physics::escape_warnings, swept_key::SweptKey, trade_free::free_row,
 };
 use crate::{
     chain::Station,
@@ -279,7 +275,7 @@ impl<'a> Trade<'a> {
                 row
             }));
         }
-        let vary = self.swept.iter().map(|v| SweptKeyRecord { key: v.key().path(), values: v.values().to_vec() }).collect();
+        let vary = self.swept.iter().map(|v| SweptKeyRecord { key: v.path(), values: v.values().to_vec() }).collect();
         let first = (0..self.cells()).find_map(|cell| self.scenario(&self.at(cell)).ok());
         let route_warnings = nodes.zip(first).map(|(nodes, first)| nodes.warnings_of_all(&first)).unwrap_or_default();
         let answer = TradeAnswer { vary, route: nodes.map(|nodes| nodes.record), rows };
@@ -302,11 +298,7 @@ impl<'a> Trade<'a> {
 
     /// The nodes of free routes, the same for all cells; `None` along a transect, and where their spacing is varied.
     fn question_nodes(&self) -> Option<QuestionNodes> {
-        if self
-            .swept
-            .iter()
-            .any(|v| v.key().table == "search" && matches!(v.key().name, "node_spacing_max_m" | "points_per_segment"))
-        {
+        if self.swept.iter().any(|v| matches!(v.key(), ("search", "node_spacing_max_m" | "points_per_segment"))) {
             return None;
         }
         // Without a case that can be prepared, every cell says why.
@@ -317,7 +309,7 @@ impl<'a> Trade<'a> {
 
     /// The values of a cell by their keys.
     fn named(&self, values: &[f64]) -> BTreeMap<String, f64> {
-        self.swept.iter().map(|v| v.key().path()).zip(values.iter().copied()).collect()
+        self.swept.iter().map(SweptKey::path).zip(values.iter().copied()).collect()
     }
 
     /// The values of a cell, from its number.
@@ -334,7 +326,7 @@ impl<'a> Trade<'a> {
     fn case(&self, values: &[f64]) -> Result<Case, CellError> {
         let scenario = self.scenario(values)?;
         // The one number that changes how the terrain is read.
-        let rereads = self.swept.iter().any(|v| (v.key().table, v.key().name) == ("terrain", "mesh_scale"));
+        let rereads = self.swept.iter().any(|v| v.key() == ("terrain", "mesh_scale"));
         let reread = scenario.terrain.as_ref().filter(|_| rereads).map(|source| Survey::of(&scenario, source, self.base));
         let reread = reread.transpose()?;
         Ok(Case::over(reread.as_ref().unwrap_or(self.survey), scenario, self.base, Commands::OfTheMachine)?)
@@ -430,7 +422,7 @@ impl<'a> Trade<'a> {
             }
         }
         let (from, to) = (own.values()[0], own.values()[own.values().len() - 1]);
-        Err(TradeError::NoEffect { path: own.key().path(), from, to })
+        Err(TradeError::NoEffect { path: own.path(), from, to })
     }
 }
 
@@ -476,7 +468,7 @@ fn at(swept: &[SweptKey], cell: usize) -> Vec<f64> {
 /// Checks for one key or two different ones, and not too many cells.
 fn checked(swept: &[SweptKey]) -> Result<(), TradeError> {
     match swept {
-        [first, second] if first.key() == second.key() => return Err(TradeError::Twice { path: first.key().path() }),
+        [first, second] if first.key() == second.key() => return Err(TradeError::Twice { path: first.path() }),
         [_] | [_, _] => {}
         _ => return Err(TradeError::Count { found: swept.len() }),
     }
@@ -494,8 +486,8 @@ fn cells(swept: &[SweptKey]) -> usize {
 fn varied(entries: &Entries, swept: &[SweptKey], values: &[f64], given_by: &str) -> Entries {
     let mut entries = entries.clone();
     for (v, &value) in swept.iter().zip(values) {
-        let key = v.key();
-        entries.set_by_option(&format!("{given_by} {}", key.path()), key.table, key.name, typed(key, value));
+        let (table, name) = v.key();
+        entries.set_by_option(&format!("{given_by} {}", v.path()), table, name, v.typed(value));
     }
     entries
 }

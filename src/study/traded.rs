@@ -51,7 +51,7 @@ pub fn trade(
     let mut warnings = answer.warnings();
     warnings.extend(route_warnings);
     // Where the shares are varied, the rows have them.
-    let shares_vary = swept.iter().any(|key| key.key().table == "derating");
+    let shares_vary = swept.iter().any(|key| key.key().0 == "derating");
     let derating = DeratingRecord::of(&first.scenario.derating).filter(|_| !shares_vary);
     warnings.extend(derating.map(|derating| derating.sentence()));
     Ok(Traded { first, answer, warnings, failed })

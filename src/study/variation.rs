@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Case, CaseError, Commands, Survey};
+use super::{Case, CaseError, Commands, Survey, case::controlled};
 use crate::scenario::{Entries, Scenario};
 
 /// A scenario of which keys are varied. Its cases are for exact commands.
@@ -35,6 +35,7 @@ impl Variation {
 
 /// The terrain of a scenario for exact commands.
 fn surveyed(scenario: &Scenario, base: &Path) -> Result<Survey, CaseError> {
+    controlled(scenario)?;
     let terrain = scenario.terrain.as_ref().ok_or(CaseError::NoTerrain)?;
     Ok(Survey::of(scenario, terrain, base)?)
 }

@@ -55,10 +55,10 @@ impl Simulation {
     /// # Examples
     /// ```
     /// use chta::{ground::DemGround, quantity::*, terrain::*, uncertainty::*, world::*};
-    /// let map = GeoReference::local(MapPoint::new(0.0, 0.0), 5.0, 5.0);
+    /// let map = GeoReference::local(MapPoint::new(0.0, 0.0), 5.0, 5.0)?;
     /// let dem = Dem::new(41, 41, vec![0.0; 41 * 41], map)?;
     /// let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(1.5)?)), rest: RestSlope::AsFrictionHolds };
-    /// let ground = DemGround::new(OverlaidDem::from(dem), &Hopper::with_speeds(9.0, 9.0)?, Gravity::new(1.6)?, &surface);
+    /// let ground = DemGround::new(OverlaidDem::new(dem, Overlays::default()), &Hopper::with_speeds(9.0, 9.0)?, Gravity::new(1.6)?, &surface);
     /// // One hop of v^2 / g = 10 m.
     /// let command = DriftCommand { takeoff_speed_m_s: 4.0, takeoff_angle: Angle::from_degrees(45.0), hops: 1 };
     /// let drift = Simulation::drifting(&ground, MapPoint::new(100.0, -100.0), command, Uncertainty::NONE)?;

@@ -19,7 +19,7 @@ use crate::desk::chta;
 
 /// Commands whose answers have every part that an answer may have: found and refused, with proof, with trials, on maps with and without
 /// a projection, with propellant, with commands in steps, with risk.
-const COMMANDS: [&str; 69] = [
+const COMMANDS: [&str; 70] = [
     "plan data/drive/mars_rover.toml --alternatives",
     "plan data/drive/mars_rover.toml --set budget.mission_time_max_s=100",
     "plan data/drive/mars_rover.toml --set drive.travel=drive --set drive.slope_up_max_deg=1",
@@ -27,6 +27,7 @@ const COMMANDS: [&str; 69] = [
     "simulate data/drive/mars_rover.toml --trials 50 --compare --success-min 0.1",
     "plan data/missions/lunar_rille_targets.toml",
     "simulate data/missions/lunar_rille_targets.toml --trials 5",
+    "simulate data/missions/small_body_drift.toml --trials 50 --success-min 0.5 --density DENSITY",
     "sites data/terrain/mars_crater_field.tif --every 90 --scenario data/scenarios/mars_crater_field.toml",
     "stance data/mesh/rubble.obj --robot data/robots/three_legs.toml --at=0,0,0.5 --body moon --set surface.friction_coefficient=0.8",
     "stance data/mesh/rubble.obj --robot data/robots/four_legs.toml --at=0,0,0.5 --height-m 1 --body moon --set surface.friction_coefficient=0.8",
@@ -103,7 +104,7 @@ pub(crate) fn documents() -> &'static [(String, String)] {
         std::fs::write(file("pairs.csv"), "start_x_m,goal_x_m\n0,20\n0,76\n20,5\n").unwrap();
         let mut commands: Vec<String> = COMMANDS
             .iter()
-            .map(|command| command.replace("PAIRS", &file("pairs.csv")).replace("MOBILITY", &file("mobility.tif")))
+            .map(|command| command.replace("PAIRS", &file("pairs.csv")).replace("MOBILITY", &file("mobility.tif")).replace("DENSITY", &file("density.tif")))
             .collect();
         commands.push(
             "compare data/scenarios/paper_76m.toml data/scenarios/wall.toml data/scenarios/lunar_hopper.toml --prove".to_owned(),

@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 127] = [
+const TELLING: [(&str, &str); 130] = [
     ("body.name", "moon"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -114,6 +114,9 @@ const TELLING: [(&str, &str); 127] = [
     ("uncertainty.policy", "open-loop"),
     ("uncertainty.trials", "77"),
     ("uncertainty.seed", "5"),
+    ("uncertainty.heading", "uncontrolled"),
+    ("uncertainty.takeoff_speed_m_s", "2"),
+    ("uncertainty.takeoff_angle_deg", "40"),
     ("drive.travel", "drive"),
     ("drive.speed_m_s", "0.5"),
     ("drive.slope_up_max_deg", "30"),

@@ -139,3 +139,36 @@ fn costs_are_refused_by_name_where_nothing_counts_them() {
     let less = desk.run(&["plan", "goal.toml", "--set", "layer.hazard={ raster = \"less.asc\", cost_per_contact = 1 }"]);
     assert!(less.status == 2 && less.stderr.contains("row 1, column 1 has -1"), "{}", less.stderr);
 }
+
+/// A row of a trade is the plan of its value, whatever the first value was.
+#[test]
+fn rows_of_a_trade_over_keys_of_a_layer_are_the_plans_of_their_values() {
+    let desk = desk();
+    for (vary, keys) in [
+        ("layer.hazard.total_max=0:24:5", "cost_per_contact = 2.5, cost_per_m = 2, total_max = 1"),
+        ("layer.hazard.cost_per_m=0.5:8.5:5", "cost_per_m = 2, total_max = 13"),
+        ("layer.hazard.max=0:3:4", "max = 9"),
+        ("layer.hazard.outage_hops_max=0:4:5", "max = 1, outage_hops_max = 1"),
+        ("layer.hazard.outage_max_s=0:12:4", "max = 1, outage_max_s = 1"),
+    ] {
+        let layer = format!("layer.hazard={{ raster = \"hazard.asc\", {keys} }}");
+        // Where the way around takes more hops than the way across.
+        let scene = ["goal.toml", "--set", "terrain.start_m=[15, 3]", "--set", "terrain.goal_m=[25, 3]", "--set", &layer];
+        let trade = desk.json(&[&["trade"], &scene[..], &["--vary", vary]].concat());
+        let (path, _) = vary.split_once('=').unwrap();
+        let rows = trade["rows"].as_array().unwrap();
+        let mut found = Vec::new();
+        for row in rows {
+            let value = &row[path];
+            let text = if path.ends_with("hops_max") { format!("{}", value.as_f64().unwrap()) } else { value.to_string() };
+            let plan = desk.run(&[&["plan"], &scene[..], &["--set", &format!("{path}={text}"), "--format", "json"]].concat());
+            assert!(plan.status < 2, "{path} = {text}: {}", plan.stderr);
+            let plan: Value = serde_json::from_str(&plan.stdout).unwrap();
+            assert_eq!(row["hops"], plan["hops"], "{path} = {text}: {row}");
+            found.push(plan["hops"].clone());
+        }
+        assert!(found.iter().any(|hops| *hops != found[0]), "{vary} changes nothing: {found:?}");
+    }
+    let refused = desk.run(&["trade", "goal.toml", "--set", &set(""), "--vary", "layer.hazard.raster=0:1:2"]);
+    assert!(refused.status == 2 && refused.stderr.contains("layer.hazard.raster: takes"), "{}", refused.stderr);
+}

@@ -16,6 +16,7 @@ mod cli_bad_input;
 mod cli_options;
 mod command_steps;
 mod documents;
+mod drift;
 mod effects;
 mod escape;
 mod exit_status;

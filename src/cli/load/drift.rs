@@ -34,7 +34,7 @@ pub(crate) fn load_drift(
         AskError::Open(error) => unopened(error, &format!("{}: ", source.name)),
         other => Failure::of(&other),
     })?;
-    for open in &open {
+    if let Some(open) = &open {
         output::warn_all(common.quiet, &open.record.warnings);
         for file in &open.files {
             claims::reads(file);

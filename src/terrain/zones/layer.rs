@@ -5,6 +5,7 @@ mod cost;
 use std::{
     fmt,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use super::{
@@ -133,7 +134,7 @@ pub(crate) enum Touch {
 pub struct Layer {
     rule: LayerRule,
     path: PathBuf,
-    raster: Dem,
+    raster: Arc<Dem>,
     /// For each row of cells, how many of those before each column do not hold: one more number than columns.
     refused_before: Vec<u32>,
     /// The same of cells without a value, of a layer with a cost; else empty.
@@ -175,20 +176,37 @@ pub fn read_layer(path: &Path, rule: LayerRule, coordinates: Option<&CoordinateS
         SameMap::Agreed => None,
         SameMap::NotCompared(reason) => Some(format!("{WHAT} {} '{}': {reason}", rule.name, name_of(path))),
     };
-    if rule.cost.is_some()
-        && let Some((row, col, value)) = cost::first_negative(&raster)
-    {
-        let name = rule.name;
-        return Err(failed(format!(
-            "the cell in row {}, column {} has {value}, expected no negative value, for layer.{name} has a cost, and what adds up is never \
-             negative; shift the values until the least is 0 (gdal_calc.py), or set the negative ones to 0",
-            row + 1,
-            col + 1
-        )));
+    Layer::of(rule, path.to_path_buf(), Arc::new(raster), not_compared)
+}
+
+impl Layer {
+    /// A layer of this raster, with its cells counted.
+    fn of(rule: LayerRule, path: PathBuf, raster: Arc<Dem>, not_compared: Option<String>) -> Result<Self, TerrainError> {
+        if rule.cost.is_some()
+            && let Some((row, col, value)) = cost::first_negative(&raster)
+        {
+            let name = rule.name;
+            let problem = format!(
+                "the cell in row {}, column {} has {value}, expected no negative value, for layer.{name} has a cost, and what adds up is never \
+                 negative; shift the values until the least is 0 (gdal_calc.py), or set the negative ones to 0",
+                row + 1,
+                col + 1
+            );
+            return Err(TerrainError::Overlay { what: WHAT, path, problem });
+        }
+        let refused_before = counts_before(&raster, &|value| !value.is_some_and(|value| rule.condition.holds(value)));
+        let unknown_before = if rule.cost.is_some() { counts_before(&raster, &|value| value.is_none()) } else { Vec::new() };
+        Ok(Self { rule, path, raster, refused_before, unknown_before, not_compared })
     }
-    let refused_before = counts_before(&raster, &|value| !value.is_some_and(|value| rule.condition.holds(value)));
-    let unknown_before = if rule.cost.is_some() { counts_before(&raster, &|value| value.is_none()) } else { Vec::new() };
-    Ok(Layer { rule, path: path.to_path_buf(), raster, refused_before, unknown_before, not_compared })
+
+    /// The same raster under another rule: as if it had been read for it.
+    ///
+    /// # Errors
+    /// As [`read_layer`], for what the rule asks of the values.
+    pub fn under(&self, rule: LayerRule) -> Result<Self, TerrainError> {
+        let not_compared = self.not_compared.clone();
+        Self::of(rule, self.path.clone(), Arc::clone(&self.raster), not_compared)
+    }
 }
 
 /// For each row of cells, how many of those before each column are counted.
@@ -237,7 +255,7 @@ impl Layer {
     }
 
     /// The raster.
-    pub const fn raster(&self) -> &Dem {
+    pub fn raster(&self) -> &Dem {
         &self.raster
     }
 
@@ -398,7 +416,7 @@ const fn as_f64(index: usize) -> f64 {
 
 /// All layers of a terrain, in the order of their names: the first one that refuses counts.
 #[derive(Clone, Debug, Default)]
-pub struct MapLayers(std::sync::Arc<[Layer]>);
+pub struct MapLayers(Arc<[Layer]>);
 
 impl MapLayers {
     /// These layers.
