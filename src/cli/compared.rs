@@ -6,8 +6,8 @@ use chta::{
     figure::{FigureError, Picture, SeenFrom},
     report::{CompareAnswer, CompareRow},
     study::{
-        CaseRecord, Compared, Comparison, MeshRouteQuestion, MeshRouted, PlanOptions, Planned, TravelOptions, TravelPlanned,
-        comparison_document, mesh_route, plan, travel_plan,
+        CaseRecord, Compared, Comparison, MeshRouteQuestion, MeshRouted, PlanOptions, Planned, TargetsPlanned, TravelOptions,
+        TravelPlanned, comparison_document, mesh_route, plan, targets_plan, travel_plan,
     },
 };
 
@@ -16,8 +16,8 @@ use super::{
     args::{CommonArgs, CompareArgs},
     effects::Purpose,
     interrupt,
-    load::{EndOptions, Loaded, MeshPlanInput, drives, is_over_mesh, load_mesh_scenario, load_scenario, relative_name},
-    not_for_travel, not_on_mesh, output,
+    load::{EndOptions, Loaded, MeshPlanInput, drives, is_over_mesh, load_mesh_scenario, load_scenario, relative_name, visits},
+    not_for_targets, not_for_travel, not_on_mesh, output,
     progress::Progress,
     wrong_thing::Role,
 };
@@ -31,6 +31,8 @@ pub(crate) enum AnyComparison {
     Mesh(Vec<MeshPlanInput>, Comparison<MeshRouted>),
     /// Missions that drive.
     Travel(Vec<Loaded>, Comparison<TravelPlanned>),
+    /// Missions over targets.
+    Targets(Vec<Loaded>, Comparison<TargetsPlanned>),
 }
 
 impl AnyComparison {
@@ -40,6 +42,7 @@ impl AnyComparison {
             Self::Chains(_, comparison) => &comparison.answer,
             Self::Mesh(_, comparison) => &comparison.answer,
             Self::Travel(_, comparison) => &comparison.answer,
+            Self::Targets(_, comparison) => &comparison.answer,
         }
     }
 
@@ -58,6 +61,10 @@ impl AnyComparison {
                 loaded.iter().map(|one| &one.record).collect(),
                 comparison.compared.iter().flat_map(Compared::<TravelPlanned>::warnings).collect(),
             ),
+            Self::Targets(loaded, comparison) => (
+                loaded.iter().map(|one| &one.record).collect(),
+                comparison.compared.iter().flat_map(Compared::<TargetsPlanned>::warnings).collect(),
+            ),
         };
         Ok(comparison_document(&records, warnings, self.answer())?)
     }
@@ -65,7 +72,9 @@ impl AnyComparison {
     /// The picture with all paths overlaid.
     pub(crate) fn picture(&self, seen_from: SeenFrom) -> Result<Picture, FigureError> {
         match self {
-            Self::Travel(..) => Err(FigureError::NoGround { what: "a comparison of missions".to_owned(), points: 0 }),
+            Self::Travel(..) | Self::Targets(..) => {
+                Err(FigureError::NoGround { what: "a comparison of missions".to_owned(), points: 0 })
+            }
             Self::Chains(_, comparison) => comparison.picture(),
             Self::Mesh(_, comparison) => comparison.picture(seen_from),
         }
@@ -87,6 +96,14 @@ pub(crate) fn compare_all(args: &CompareArgs) -> Result<AnyComparison, Failure> 
             ])?;
             let (loaded, cases) = each(args, compared_travel)?;
             return Ok(AnyComparison::Travel(loaded, Comparison::of(cases)));
+        }
+        if args.scenarios.first().is_some_and(|file| visits(file, &common(args))) {
+            not_for_targets::refuse(&[
+                ("--prove", args.prove.prove, "bounds the hops along a profile"),
+                ("--plot", args.plot.is_some(), "draws hops over one another (chta plan --plot draws each mission)"),
+            ])?;
+            let (loaded, cases) = each(args, compared_targets)?;
+            return Ok(AnyComparison::Targets(loaded, Comparison::of(cases)));
         }
         let (loaded, cases) = each(args, compared)?;
         return Ok(AnyComparison::Chains(loaded, Comparison::of(cases)));
@@ -154,6 +171,15 @@ fn compared_travel(file: &Path, args: &CompareArgs) -> Result<(Loaded, Compared<
     let planned = travel_plan(&loaded.case, TravelOptions::default(), &Progress::new(args.quiet))?;
     output::warn_all(args.quiet, &planned.warnings);
     Ok((loaded, Compared::<TravelPlanned>::of(planned, relative_name(file), &file.display().to_string())))
+}
+
+/// Loads and plans one mission over targets.
+fn compared_targets(file: &Path, args: &CompareArgs) -> Result<(Loaded, Compared<TargetsPlanned>), Failure> {
+    let loaded = load_scenario(file, &common(args), Purpose::Compare)?;
+    loaded.ends()?;
+    let planned = targets_plan(&loaded.case, &Progress::new(args.quiet))?;
+    output::warn_all(args.quiet, &planned.warnings);
+    Ok((loaded, Compared::<TargetsPlanned>::of(planned, relative_name(file), &file.display().to_string())))
 }
 
 /// Loads and plans one scenario over a mesh.

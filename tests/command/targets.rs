@@ -164,6 +164,33 @@ fn require_and_trade_ask_for_all_targets() {
     assert!(hops[0].is_none() && hops[1] > hops[2] && hops[2].is_some(), "{traded}");
 }
 
+/// Missions side by side: each row is the plan of its scenario, and one that leaves targets out has no path.
+#[test]
+fn missions_are_compared_as_they_are_planned() {
+    let desk = desk();
+    let text = desk.read("mission.toml");
+    desk.write("slower.toml", text.replace("[hopper]\n", "[hopper]\nmass_kg = 9\n"));
+    desk.write(
+        "weak.toml",
+        text.lines()
+            .map(|line| if line.starts_with("takeoff_speed_max") { "takeoff_speed_max_m_s = 0.4" } else { line })
+            .collect::<Vec<_>>()
+            .join("\n"),
+    );
+    let files = ["mission.toml", "slower.toml", "weak.toml"];
+    let compared = desk.json(&[&["compare"], &files[..]].concat());
+    for (row, file) in compared["compared"].as_array().unwrap().iter().zip(files) {
+        let plan: serde_json::Value = serde_json::from_str(&desk.run(&["plan", file, "--format", "json"]).stdout).unwrap();
+        for key in ["hops", "verdict"] {
+            assert_eq!(row[key], plan[key], "{file}: {row}");
+        }
+        assert_eq!(row["flight_time_s"], plan["totals"]["flight_time_s"], "{file}: {row}");
+        assert_eq!(row["start_m"], plan["start_m"], "{file}");
+    }
+    assert_eq!(compared["compared"][2]["verdict"], "no-path-found");
+    assert_eq!(desk.run(&[&["compare", "--require-all"], &files[..]].concat()).status, 1);
+}
+
 /// Errors: a trial that misses a target does not go on, so that shares fall from visit to visit.
 #[test]
 fn trials_fly_the_whole_mission() {
@@ -187,7 +214,7 @@ fn trials_fly_the_whole_mission() {
 #[test]
 fn what_does_not_go_with_targets_is_refused_in_one_sentence() {
     let desk = desk();
-    let rows: [(&[&str], &str); 11] = [
+    let rows: [(&[&str], &str); 12] = [
         (&["plan", "mission.toml", "--goal", "40,3"], "a mission ends at its last target"),
         (&["plan", "mission.toml", "--front", "hops,energy"], "--front"),
         (&["plan", "mission.toml", "--set", "terrain.route=transect"], "[mission] is for free routes over a dem"),
@@ -197,12 +224,13 @@ fn what_does_not_go_with_targets_is_refused_in_one_sentence() {
         (&["plan", "mission.toml", "--set", "mission.targets_m=[[27,3],[5,3]]"], "there is no ground at (5 m, 3 m)"),
         (&["plan", "mission.toml", "--set", "mission.targets_lonlat_deg=[[1,3]]"], "has no meaning beside mission.targets_m"),
         (&["plan", "mission.toml", "--set", "drive.speed_m_s=1", "--set", "drive.slope_up_max_deg=20"], "by hops alone"),
-        (&["compare", "mission.toml", "mission.toml"], "for one goal alone"),
+        (&["compare", "mission.toml", "mission.toml", "--prove"], "--prove"),
+        (&["compare", "mission.toml", "mission.toml", "--plot", "c.svg"], "--plot"),
         (&["simulate", "mission.toml", "--tally", "t.json"], "--tally"),
     ];
     for (words, part) in rows {
         let ran = desk.run(words);
-        assert!(ran.status == 2 || words[0] == "compare", "{words:?}: {ran:?}");
+        assert_eq!(ran.status, 2, "{words:?}: {ran:?}");
         assert!(ran.stderr.contains(part) || ran.stdout.contains(part), "{part:?}: {words:?}: {ran:?}");
     }
 }

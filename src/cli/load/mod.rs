@@ -132,11 +132,19 @@ impl Target {
 
 /// Whether a file is a scenario that drives, by its keys alone; one that cannot be read is reported when it is loaded.
 pub(crate) fn drives(target: &Path, common: &CommonArgs) -> bool {
-    let source = inputs::open(target, Role::Scenario).ok().and_then(|input| read_source(&input).ok());
-    source.is_some_and(|mut source| {
-        apply_options(&mut source.entries, common, None, EndOptions::NONE);
-        Scenario::new(source.entries).is_ok_and(|scenario| scenario.drives().is_some())
-    })
+    scenario_of(target, common).is_some_and(|scenario| scenario.drives().is_some())
+}
+
+/// Whether a file is a scenario of a mission over targets, in the same way.
+pub(crate) fn visits(target: &Path, common: &CommonArgs) -> bool {
+    scenario_of(target, common).is_some_and(|scenario| scenario.mission.is_some())
+}
+
+/// The scenario of a file by its keys alone.
+fn scenario_of(target: &Path, common: &CommonArgs) -> Option<Scenario> {
+    let mut source = read_source(&inputs::open(target, Role::Scenario).ok()?).ok()?;
+    apply_options(&mut source.entries, common, None, EndOptions::NONE);
+    Scenario::new(source.entries).ok()
 }
 
 /// Loads a scenario or result as it stands.

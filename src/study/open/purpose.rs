@@ -219,7 +219,7 @@ impl Purpose {
             ("budget", "estimated_success_min") => by_risk || matches!(self, Self::Require | Self::Trade),
             ("budget", _) | ("search", "objective") => self.plans_by_objective(),
             ("mission", _) => {
-                matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Require | Self::Trade)
+                matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Require | Self::Trade | Self::Compare)
             }
             ("drive", _) => {
                 matches!(

@@ -1,5 +1,6 @@
 //! Missions over several targets: plans, and their trials.
 
+mod compare;
 #[cfg(feature = "plot")]
 mod picture;
 mod plan;

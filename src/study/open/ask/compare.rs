@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{
     super::{AskError, Draft, OpenError, Purpose, Reply},
-    OF_DRIVES, OVER_FACETS, refuse,
+    OF_DRIVES, OF_TARGETS, OVER_FACETS, refuse,
 };
 #[cfg(feature = "plot")]
 use crate::figure::SeenFrom;
@@ -12,13 +12,13 @@ use crate::{
     progress::Progress,
     report::{CompareRow, DocumentKind},
     study::{
-        CaseRecord, Compared, Comparison, MeshRouteQuestion, MeshRouted, PlanOptions, Planned, Proof, TravelOptions, TravelPlanned,
-        comparison_document, mesh_route, plan, travel_plan,
+        CaseRecord, Compared, Comparison, MeshRouteQuestion, MeshRouted, PlanOptions, Planned, Proof, TargetsPlanned,
+        TravelOptions, TravelPlanned, comparison_document, mesh_route, plan, targets_plan, travel_plan,
     },
 };
 
-/// Plans for every scenario and shows the answers side by side: all along chains or free routes over DEMs, all over a mesh, or all driving,
-/// as the first is. A scenario that fails has a row with its error; so has one that `progress` cancels.
+/// Plans for every scenario and shows the answers side by side: all along chains or free routes over DEMs, all over a mesh, all driving,
+/// or all missions over targets, as the first is. A scenario that fails has a row with its error; so has one that `progress` cancels.
 ///
 /// # Errors
 /// [`AskError`]: the first error, if no scenario has an answer.
@@ -39,6 +39,11 @@ pub fn compare(drafts: &[Draft], proof: Option<Proof>, progress: &dyn Progress) 
         refuse(&[(proof.is_some(), "a proof")], OF_DRIVES)?;
         let (records, comparison) = each(drafts, |draft, names| travelling(draft, names, progress))?;
         return replied(&records, comparison.compared.iter().flat_map(Compared::<TravelPlanned>::warnings).collect(), &comparison);
+    }
+    if first.validated(false).is_ok_and(|scenario| scenario.mission.is_some()) {
+        refuse(&[(proof.is_some(), "a proof")], OF_TARGETS)?;
+        let (records, comparison) = each(drafts, |draft, names| visiting(draft, names, progress))?;
+        return replied(&records, comparison.compared.iter().flat_map(Compared::<TargetsPlanned>::warnings).collect(), &comparison);
     }
     let options = PlanOptions { proof, ..PlanOptions::default() };
     let (records, comparison) = each(drafts, |draft, names| along_chain(draft, names, options, progress))?;
@@ -94,6 +99,13 @@ fn travelling(draft: &Draft, (file, name): Names, progress: &dyn Progress) -> On
     open.case.ends()?;
     let planned = travel_plan(&open.case, TravelOptions::default(), progress)?;
     Ok((open.record, Compared::<TravelPlanned>::of(planned, file, &name)))
+}
+
+fn visiting(draft: &Draft, (file, name): Names, progress: &dyn Progress) -> One<TargetsPlanned> {
+    let open = draft.case(Purpose::Compare)?;
+    open.case.ends()?;
+    let planned = targets_plan(&open.case, progress)?;
+    Ok((open.record, Compared::<TargetsPlanned>::of(planned, file, &name)))
 }
 
 fn over_mesh(draft: &Draft, (file, name): Names, progress: &dyn Progress) -> One<MeshRouted> {
