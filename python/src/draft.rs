@@ -339,8 +339,8 @@ impl Draft {
 
     /// Landing sites ranked.
     #[pyo3(signature = (
-        dem=None, candidates_m=vec![], every=1, targets_m=vec![], stride=1, auto_nodes=false, memory_max_bytes=None, threads=None,
-        progress=None
+        dem=None, candidates_m=vec![], every=1, targets_m=vec![], stride=1, auto_nodes=false, trials=false, memory_max_bytes=None,
+        threads=None, progress=None
     ))]
     fn sites(
         &self,
@@ -351,12 +351,13 @@ impl Draft {
         targets_m: Vec<(f64, f64)>,
         stride: usize,
         auto_nodes: bool,
+        trials: bool,
         memory_max_bytes: Option<u64>,
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Reply> {
         let (candidates_m, targets_m) = (points(candidates_m), points(targets_m));
-        let asked = SitesAsked { dem, candidates_m, every, targets_m, stride, auto_nodes, memory_max_bytes };
+        let asked = SitesAsked { dem, candidates_m, every, targets_m, stride, auto_nodes, trials, memory_max_bytes };
         self.ask(py, (threads, progress), |draft, watch| draft.sites(&asked, watch)).map(Reply)
     }
 

@@ -78,6 +78,7 @@ def test_maps_and_sites() -> None:
     open_ = chta.Scenario.open(path)
     words = ("map", path, "--stride", "8", "--return", "--effort", "energy")
     same(words, lambda: open_.map(stride=8, back=True, effort="energy"))
+    same(("sites", path, "--stride", "8", "--every", "12", "--trials", "20"), lambda: open_.sites(stride=8, every=12, trials=20))
     same(("sites", path, "--stride", "16", "--every", "4", "--require-all"), lambda: open_.sites(stride=16, every=4))
     dem = "data/terrain/lunar_rille.tif"
     starts = ("map", dem, "--scenario", path, "--start", "60,60", "--goal", "100,60", "--stride", "8")

@@ -115,6 +115,7 @@ fn of_map_study(error: &MapStudyError) -> Option<String> {
              --stride",
             first.x, first.y, second.x, second.y, post.x, post.y
         )),
+        MapStudyError::NoTargetOfTrials => Some(format!("--trials: {error}; the option for a target: --target X,Y")),
         MapStudyError::MissionsTooLarge { needed_bytes, .. } => {
             Some(format!("--memory-max-mib: {error}; the option for that: --memory-max-mib {}", needed_bytes.div_ceil(1 << 20)))
         }

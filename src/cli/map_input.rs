@@ -53,7 +53,7 @@ impl MapInput {
             trials: args.simulate,
             ends,
         };
-        let bare = load_map(dem, common, (&searched, &args.objective), purpose, has_start)?;
+        let bare = load_map(dem, common, (&searched, &args.objective, &[]), purpose, has_start)?;
         let mut warnings = Vec::new();
         let starts = match (&args.starts, &bare.ends) {
             (Some(file), _) => of_file(file, &mut warnings)?,

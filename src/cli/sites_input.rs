@@ -39,8 +39,8 @@ impl SitesInput {
     pub(crate) fn of(args: &SitesArgs) -> Result<Self, Failure> {
         let node_spacing_max_m = args.node_spacing_max_m.and_then(NodeSpacing::metres);
         let searched = SearchArgs { points_per_segment: None, node_spacing_max_m, effort: None };
-        let purpose = |ends| Purpose::Sites { ends };
-        let bare = load_map(&args.dem, &args.common, (&searched, &args.objective), purpose, true)?;
+        let purpose = |ends| Purpose::Sites { trials: args.trials.is_some(), ends };
+        let bare = load_map(&args.dem, &args.common, (&searched, &args.objective, &args.own_keys()), purpose, true)?;
         if bare.scenario.drives().is_some() {
             return Err(Failure::message(
                 "[drive]: found a scenario that drives, expected hops alone: landing sites are ranked by hops; set drive.travel = \"hop\"",
@@ -72,7 +72,7 @@ impl SitesInput {
             ranks_sites: true,
             predecessors: false,
             refusals: false,
-            trials: false,
+            trials: args.trials.is_some(),
             hops_max: None,
             amounts: Vec::new(),
             memory_max_bytes: args.size.memory_max_bytes(),

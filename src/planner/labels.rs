@@ -21,6 +21,8 @@ pub(super) struct Tracked {
     outages: Vec<Stretch>,
     /// What paths begin with: a path that follows another one may begin in a stretch.
     begins: OutagePart,
+    /// The stretch, of each layer, that every path ends with at least.
+    ends: Vec<Stretch>,
 }
 
 impl Tracked {
@@ -45,12 +47,19 @@ impl Tracked {
         let allowed: Vec<f64> = amounts.iter().map(|amount| budgets.allowed(*amount)).collect();
         // A label that is no worse by the objective has no more of its first amount; a greatest speed within its budget stays there.
         let compared = (1..amounts.len()).filter(|&i| allowed[i].is_finite() && amounts[i].adds_up()).collect();
-        Self { objective: objective.len(), amounts, compared, allowed, outages: Vec::new(), begins: OutagePart::HELD }
+        let (outages, ends) = (Vec::new(), Vec::new());
+        Self { objective: objective.len(), amounts, compared, allowed, outages, begins: OutagePart::HELD, ends }
     }
 
     /// The same for paths with stretches no longer than these outside the conditions of layers.
     pub(super) fn under(self, outages: Vec<Stretch>, begins: OutagePart) -> Self {
-        Self { outages, begins, ..self }
+        Self { ends: vec![Stretch::NONE; outages.len()], outages, begins, ..self }
+    }
+
+    /// The same where every path to the goal ends with stretches at least as long as these.
+    pub(super) fn ending_with(self, ends: Vec<Stretch>) -> Self {
+        debug_assert_eq!(ends.len(), self.outages.len(), "a stretch for each layer");
+        Self { ends, ..self }
     }
 
     /// Whether stretches outside the conditions of layers count.
@@ -244,7 +253,7 @@ impl Labels {
         out.clear();
         let joined = |(amount, total): (&Amount, &f64)| amount.join(*total, leg.of(*amount));
         out.extend(self.tracked.amounts.iter().zip(self.totals(label)).map(joined));
-        out.resize(self.tracked.width(), 0.0);
+        out.extend(self.tracked.least_outages(self.totals(label), &|_| Stretch::NONE));
     }
 }
 
@@ -264,8 +273,14 @@ impl Tracked {
             }
             out.push(whole);
         }
-        out.resize(self.width(), 0.0);
+        out.extend(self.least_outages(totals, &|layer| self.ends[layer]));
         true
+    }
+
+    /// What is kept of outages at least, after whatever follows these numbers.
+    fn least_outages<'s>(&'s self, totals: &'s [f64], end: &'s dyn Fn(usize) -> Stretch) -> impl Iterator<Item = f64> + 's {
+        let kept = totals[self.amounts.len()..].chunks_exact(OutagePart::WIDTH).enumerate();
+        kept.flat_map(|(layer, kept)| OutagePart::least_after(kept, end(layer)))
     }
 
     /// What the labels of a path without legs have.

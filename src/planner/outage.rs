@@ -33,6 +33,14 @@ impl Stretch {
         Self { time_s: self.time_s + next.time_s, hops: self.hops + next.hops }
     }
 
+    /// What of it an allowed longest stretch limits: labels need not differ in the rest.
+    const fn limited_by(self, most: Self) -> Self {
+        Self {
+            time_s: if most.time_s.is_finite() { self.time_s } else { 0.0 },
+            hops: if most.hops.is_finite() { self.hops } else { 0.0 },
+        }
+    }
+
     /// Whether it is no longer than the longest one that is allowed, as a total keeps a budget.
     fn is_within(self, most: Self) -> bool {
         const TOLERANCE: f64 = 1e-9;
@@ -79,7 +87,7 @@ impl OutagePart {
         }
     }
 
-    /// A part followed by another one; `None` if a stretch would be longer than allowed.
+    /// A part followed by another one; `None` if a stretch would be longer than allowed. What no limit asks for is not kept of either.
     ///
     /// What of a stretch lies before this part is not known: the beginning is judged once it is.
     pub(super) fn then(&self, next: &Self, most: Stretch) -> Option<Self> {
@@ -89,9 +97,9 @@ impl OutagePart {
             return None;
         }
         Some(Self {
-            before: if self.is_open { joined } else { self.before },
+            before: if self.is_open { joined } else { self.before }.limited_by(most),
             within: Stretch::NONE,
-            after: if next.is_open { joined } else { next.after },
+            after: if next.is_open { joined } else { next.after }.limited_by(most),
             is_open: self.is_open && next.is_open,
         })
     }
@@ -100,6 +108,13 @@ impl OutagePart {
     pub(super) const fn kept(&self) -> [f64; Self::WIDTH] {
         let is_open = if self.is_open { 1.0 } else { 0.0 };
         [self.before.time_s, self.before.hops, self.after.time_s, self.after.hops, is_open]
+    }
+
+    /// What a label keeps at least of any path that goes on from one of which these numbers are kept, and ends with a stretch no shorter than
+    /// one: what lies before the condition first holds never shrinks, and of what comes nothing is known but the end.
+    pub(super) fn least_after(kept: &[f64], end: Stretch) -> [f64; Self::WIDTH] {
+        let before = Self::of_kept(kept).before;
+        Self { before, within: Stretch::NONE, after: end, is_open: false }.kept()
     }
 
     /// The part of which a label keeps these numbers.

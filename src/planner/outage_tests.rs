@@ -218,7 +218,7 @@ pub(super) fn stops(draw: &mut Draw, ground: &DemGround, count: usize) -> Option
 #[test]
 fn routes_and_missions_under_outages_are_those_of_all_sequences_of_hops() {
     let draw = &mut Draw::seeded(2111);
-    let (mut whole, mut some, mut around, mut without) = (0, 0, 0, 0);
+    let (mut whole, mut some, mut around, mut without, mut through) = (0, 0, 0, 0, 0);
     for case in 0..260 {
         let ground = ground(draw);
         let targets = 1 + draw.below(2);
@@ -261,10 +261,12 @@ fn routes_and_missions_under_outages_are_those_of_all_sequences_of_hops() {
         }
         let free = tried(Vec::new());
         whole += u32::from(targets > 1 && visited as usize == targets);
+        let is_outside = |at: &MapPoint| ground.layers().iter().any(|layer| layer.is_outside_at(*at, &stops[1..]));
+        through += u32::from(targets > 1 && visited as usize == targets && stops[1..].iter().any(is_outside));
         some += u32::from(targets > 1 && visited == 1);
         around += u32::from(free.as_ref().is_some_and(|(most, _)| *most == visited) && free != expected && visited > 0);
         without += u32::from(free.is_some_and(|(most, _)| most > visited));
     }
-    let counts = format!("{whole} whole, {some} in part, {around} other ways, {without} fewer targets");
-    assert!(whole > 20 && some > 5 && around > 10 && without > 20, "{counts}");
+    let counts = format!("{whole} whole, {some} in part, {around} other ways, {without} fewer targets, {through} through shade");
+    assert!(whole > 20 && through > 10 && some > 5 && around > 10 && without > 20, "{counts}");
 }

@@ -26,6 +26,9 @@ pub struct SitesAnswer {
     pub targets_m: Vec<[f64; 2]>,
     /// Searches over all nodes: one from every candidate, and one back to a candidate of every part.
     pub searches: usize,
+    /// Trials flown from every candidate to each target that it reaches; absent if none were asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trials: Option<u64>,
     /// How many sets the candidates form of which each reaches the others: those of one set reach the same nodes, and are reached again from
     /// the same nodes.
     pub parts: usize,
@@ -69,6 +72,16 @@ pub struct SiteRecord {
     pub targets_reached: usize,
     /// The hops to each target, in their order; null where it is not reached over these nodes.
     pub target_hops: Vec<Option<i16>>,
+    /// Of trials of the paths to the targets, the share that arrives: the least of all targets; absent without trials, or where a target is not
+    /// reached.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub success: Option<f64>,
+    /// Why that is not known although trials were asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub success_missing: Option<String>,
+    /// The share that arrives at each target, in their order; null where it is not reached over these nodes; empty without trials.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub target_success: Vec<Option<f64>>,
     /// To which set of candidates that reach each other it belongs, from 1.
     pub part: Option<usize>,
     /// Why no hop begins or ends there, or why it has no answer; null if hops do.
@@ -93,6 +106,9 @@ impl SiteRecord {
             greatest_total: None,
             targets_reached: 0,
             target_hops: Vec::new(),
+            success: None,
+            success_missing: None,
+            target_success: Vec::new(),
             part: None,
             refusal: Some(refusal),
         }
@@ -154,9 +170,13 @@ impl SitesAnswer {
         }
         let of = if self.targets_m.is_empty() { "reached" } else { "targets" };
         let amount = (self.amount != Amount::Hops).then(|| format!("{:>16}", format!("mean {}", self.amount)));
+        if let Some(trials) = self.trials {
+            let _ = writeln!(text, "arrive: the least share of {trials} trials that arrive, over the targets");
+        }
+        let success = self.trials.map_or("", |_| " arrive (%)");
         let _ = writeln!(
             text,
-            "\n{:>5}{:>10}{:>12}{:>12}{:>12}{:>11}{:>9}{:>13}{:>12}{}  hops to targets",
+            "\n{:>5}{:>10}{:>12}{:>12}{:>12}{:>11}{:>9}{:>13}{:>12}{}{success}  hops to targets",
             "rank",
             "candidate",
             "x (m)",
@@ -183,9 +203,12 @@ impl SitesAnswer {
         let count = if self.targets_m.is_empty() { site.reachable_nodes } else { site.targets_reached };
         let amount =
             (self.amount != Amount::Hops).then(|| format!("{:>16}", or_none(site.mean_total.map(|mean| format!("{mean:.3}")))));
+        let success = self
+            .trials
+            .map_or(String::new(), |_| format!("{:>11}", or_none(site.success.map(|share| format!("{:.2}", 100.0 * share)))));
         let refusal = site.refusal.as_ref().map(|refusal| format!("  {refusal}")).unwrap_or_default();
         format!(
-            "{:>5}{:>10}{:>12.3}{:>12.3}{:>12.2}{:>11.2}{count:>9}{:>13}{:>12}{}  {hops}{refusal}",
+            "{:>5}{:>10}{:>12.3}{:>12.3}{:>12.2}{:>11.2}{count:>9}{:>13}{:>12}{}{success}  {hops}{refusal}",
             site.rank,
             site.candidate,
             site.x_m,
@@ -198,14 +221,16 @@ impl SitesAnswer {
         )
     }
 
-    /// Writes the candidates as CSV: one a row, best first, with a column of hops for each target.
+    /// Writes the candidates as CSV: one a row, best first, with a column of hops for each target, and with trials one of the share that arrives.
     ///
     /// # Errors
     /// [`io::Error`] from `out`.
     pub fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
         let mut rows = csv::Writer::from_writer(out);
         let targets = (1..=self.targets_m.len()).map(|number| format!("hops_to_target_{number}"));
-        let columns = COLUMNS.into_iter().map(str::to_owned).chain(targets);
+        let of_trials = self.trials.map_or(0, |_| self.targets_m.len());
+        let success = (1..=of_trials).map(|number| format!("success_to_target_{number}"));
+        let columns = COLUMNS.into_iter().map(str::to_owned).chain(targets).chain(success);
         rows.write_record(columns)?;
         for site in &self.sites {
             let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
@@ -224,18 +249,21 @@ impl SitesAnswer {
                 number(site.mean_total),
                 number(site.greatest_total),
                 site.targets_reached.to_string(),
+                number(site.success),
+                site.success_missing.clone().unwrap_or_default(),
                 site.part.map_or(String::new(), |part| part.to_string()),
                 site.refusal.clone().unwrap_or_default(),
             ];
             let hops = (0..self.targets_m.len()).map(|target| whole(site.target_hops.get(target).copied().flatten()));
-            rows.write_record(own.into_iter().chain(hops))?;
+            let success = (0..of_trials).map(|target| number(site.target_success.get(target).copied().flatten()));
+            rows.write_record(own.into_iter().chain(hops).chain(success))?;
         }
         rows.flush()
     }
 }
 
 /// The columns of [`SitesAnswer::write_csv`], before those of targets.
-const COLUMNS: [&str; 15] = [
+const COLUMNS: [&str; 17] = [
     "rank",
     "candidate",
     "x_m",
@@ -249,6 +277,8 @@ const COLUMNS: [&str; 15] = [
     "mean_total",
     "greatest_total",
     "targets_reached",
+    "success",
+    "success_missing",
     "part",
     "refusal",
 ];

@@ -16,6 +16,12 @@ pub struct SizeAnswer {
     pub nodes: u64,
     /// Pairs of nodes that may be tested, at most.
     pub pairs_max: u64,
+    /// Searches over all nodes, at most, where an answer takes several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub searches_max: Option<u64>,
+    /// Trials flown, at most, of landing sites; absent where none are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trials_max: Option<u64>,
     /// Bytes needed, at most; the sum of `memory`.
     pub bytes_max: u64,
     /// The same by what they are for.
@@ -35,14 +41,18 @@ impl SizeAnswer {
     /// From counts and parts.
     pub fn new([posts, nodes, pairs_max]: [u64; 3], memory: Vec<SizeRecord>) -> Self {
         let bytes_max = memory.iter().fold(0, |sum: u64, part| sum.saturating_add(part.bytes_max));
-        Self { dry_run: true, posts, nodes, pairs_max, bytes_max, memory }
+        Self { dry_run: true, posts, nodes, pairs_max, searches_max: None, trials_max: None, bytes_max, memory }
     }
 
     /// The answer as text.
     pub fn text(&self) -> String {
         let Self { posts, nodes, pairs_max, .. } = self;
+        let counts = [("searches over all nodes", self.searches_max), ("trials", self.trials_max)];
+        let counts: String =
+            counts.iter().filter_map(|(what, most)| most.map(|most| format!("{what}: at most {most}\n"))).collect();
         let mut text = format!(
-            "dry run: nothing was computed\nposts of the DEM: {posts}\nnodes: {nodes}\npairs of nodes: at most {pairs_max}\nmemory: at most {}\n",
+            "dry run: nothing was computed\nposts of the DEM: {posts}\nnodes: {nodes}\npairs of nodes: at most {pairs_max}\n{counts}memory: \
+             at most {}\n",
             mebibytes(self.bytes_max)
         );
         for part in &self.memory {

@@ -3,14 +3,16 @@
 use std::ops::ControlFlow;
 
 use super::{
-    JourneyEnd,
+    Defect, JourneyEnd,
     map::{Aim, MapQuestion, MapStudyError, NamedPlace, PreparedMap, Spot, allowed},
 };
 use crate::{
+    path::HopPath,
     planner::Amount,
     progress::{Detail, Meter, Progress, Stage, Step},
-    reach::map::{Journey, MapError, MapObjective, Post, PostHops, Search, least_totals, search},
+    reach::map::{Journey, MapError, MapObjective, Post, PostHops, Search, joined, least_totals, search, verify},
     report::{DeratingRecord, SiteRecord, SitesAnswer, SizeAnswer},
+    uncertainty::Policy,
 };
 
 /// Where a mission may begin.
@@ -29,6 +31,12 @@ pub struct SitesQuestion<'a> {
     pub map: MapQuestion<'a>,
     /// The candidates.
     pub candidates: Candidates,
+}
+
+/// A row of the answer, and the paths to the targets where they are flown.
+struct Row {
+    record: SiteRecord,
+    paths: Vec<Option<HopPath>>,
 }
 
 /// The answer to a question about landing sites, with what pictures and rasters show.
@@ -101,13 +109,23 @@ impl SitesQuestion<'_> {
     /// What the answer takes at most: the bytes of one map, and the pairs of all searches.
     pub fn size(&self, prepared: &PreparedMap) -> SizeAnswer {
         let mut size = prepared.memory.answer();
-        // One search from every candidate, and one back to each.
-        size.pairs_max = size.pairs_max.saturating_mul(2 * self.count_max(prepared) as u64);
+        let count = self.count_max(prepared) as u64;
+        // One search from every candidate, and one back to each; and one to each target where trials replan.
+        let of_candidates = 2 * count;
+        let targets = prepared.goals.len() as u64;
+        let keys = self.map.trials.then(|| self.map.scenario.uncertainty.clone().unwrap_or_default());
+        let replans = keys.as_ref().is_some_and(|keys| keys.policy == Policy::Replan);
+        let searches = of_candidates + if replans { targets } else { 0 };
+        size.pairs_max = size.pairs_max.saturating_mul(searches);
+        size.searches_max = Some(searches);
+        size.trials_max = keys.map(|keys| keys.options().trials.saturating_mul(count).saturating_mul(targets));
         size
     }
 }
 
 /// Ranks candidates for a landing site.
+///
+/// With trials, the path from every candidate to each target is flown so many times as the scenario says.
 ///
 /// From every candidate one search over all nodes; and one back to a candidate of every set of candidates that reach each other, which share the
 /// nodes that they reach and those from which they are reached.
@@ -122,6 +140,9 @@ fn ranked(prepared: &PreparedMap, question: &SitesQuestion<'_>, progress: &dyn P
     let scenario = question.map.scenario;
     let hops = PostHops::over(prepared.planning.clone(), prepared.lattice)?;
     let candidates = question.candidates(prepared, &hops);
+    if question.map.trials && prepared.goals.is_empty() {
+        return Err(MapStudyError::NoTargetOfTrials);
+    }
     let meter = Meter::with_total(progress, Stage::Sites, candidates.len() as u64);
     meter.report(Detail::None).map_err(MapError::from)?;
     let nodes = (0..prepared.lattice.count()).filter(|index| hops.has_ground(prepared.lattice.node(*index))).count();
@@ -138,11 +159,15 @@ fn ranked(prepared: &PreparedMap, question: &SitesQuestion<'_>, progress: &dyn P
             Err(error) => {
                 let Candidates::Places(places) = &question.candidates else { continue };
                 let at = places.get(number - 1).and_then(|place| place.place.metres());
-                rows.push(SiteRecord::refused(*number, at.map_or([f64::NAN; 2], |at| [at.x, at.y]), error.to_string()));
+                let record = SiteRecord::refused(*number, at.map_or([f64::NAN; 2], |at| [at.x, at.y]), error.to_string());
+                rows.push(Row { record, paths: Vec::new() });
             }
         }
         meter.complete_one().map_err(MapError::from)?;
     }
+    let mut warnings = prepared.warnings.clone();
+    let trials = fly(prepared, (&hops, &question.map), &mut rows, &mut warnings, progress)?;
+    let rows: Vec<SiteRecord> = rows.into_iter().map(|row| row.record).collect();
     let answer = SitesAnswer {
         stride: prepared.lattice.stride,
         nodes_per_post: prepared.lattice.per_post,
@@ -150,11 +175,60 @@ fn ranked(prepared: &PreparedMap, question: &SitesQuestion<'_>, progress: &dyn P
         amount,
         targets_m: prepared.goals.iter().map(|goal| [goal.at.x, goal.at.y]).collect(),
         searches: searches(&rows, &parts),
+        trials,
         parts: parts.sizes.len(),
         derating: DeratingRecord::of(&scenario.derating),
         sites: rows,
     };
-    Ok(SitesStudy { answer: answer.ranked(), warnings: prepared.warnings.clone() })
+    Ok(SitesStudy { answer: answer.ranked(), warnings })
+}
+
+/// Flies the paths from all candidates to the targets, one target after the other, and writes the shares that arrive into the rows.
+///
+/// # Returns
+/// How many trials each path has; `None` if none are asked for.
+fn fly(
+    prepared: &PreparedMap,
+    (hops, question): (&PostHops, &MapQuestion<'_>),
+    rows: &mut [Row],
+    warnings: &mut Vec<String>,
+    progress: &dyn Progress,
+) -> Result<Option<u64>, MapStudyError> {
+    let Some((scenario, of_errors)) = question.flown_scenario()? else { return Ok(None) };
+    let keys = scenario.uncertainty.clone().unwrap_or_default();
+    let options = keys.options();
+    warnings.extend(of_errors);
+    let paths: Vec<Option<HopPath>> = rows.iter().flat_map(|row| row.paths.iter().cloned()).collect();
+    warnings.extend(scenario.trial_warnings(&[keys.policy], &prepared.trial_ground(&paths)));
+    for (target, goal) in prepared.goals.iter().enumerate() {
+        let goes_by = prepared.goes_by(question, (hops, goal), &keys, progress)?;
+        for Row { record, paths } in rows.iter_mut() {
+            let success = match paths.get(target).and_then(Option::as_ref) {
+                // A site at the target has arrived.
+                Some(path) => match prepared.trials_of(question, (path, &goes_by), &keys)? {
+                    Some(simulation) => Some(simulation.run(&options, &mut (), progress)?.success.rate),
+                    None => Some(1.0),
+                },
+                None => None,
+            };
+            record.target_success.push(success);
+        }
+    }
+    for Row { record, .. } in rows.iter_mut() {
+        let missing = record.target_success.iter().position(Option::is_none);
+        match missing {
+            Some(_) if record.refusal.is_some() => {
+                record.success_missing = Some("no hop begins there, so that there is no path to fly".to_owned());
+            }
+            Some(target) => {
+                let number = target + 1;
+                let why = format!("target {number} is not reached over these nodes, so that there is no path to fly");
+                record.success_missing = Some(why);
+            }
+            None => record.success = record.target_success.iter().flatten().copied().reduce(f64::min),
+        }
+    }
+    Ok(Some(options.trials))
 }
 
 /// How many searches over all nodes it took.
@@ -170,7 +244,7 @@ fn site(
     (number, spot, nodes): (usize, &Spot, usize),
     parts: &mut Parts,
     meter: &Meter<'_>,
-) -> Result<SiteRecord, MapStudyError> {
+) -> Result<Row, MapStudyError> {
     let lattice = prepared.lattice;
     let silent = Silent(meter);
     let (scenario, options) = (question.scenario, &question.scenario.search);
@@ -179,13 +253,13 @@ fn site(
         Aim::Hops(most) => *most,
         Aim::Least(..) => None,
     };
+    let objective = MapObjective::new(hops, &scenario.full_objective(), scenario.commands, options.takeoff);
     let (out, totals) = match &aim {
         Aim::Hops(_) => {
             let asked = Search { journey: Journey::Outbound, effort: None, hops_max };
             (search(hops, &[spot.post.into()], asked, &silent)?, None)
         }
         Aim::Least(_, budget) => {
-            let objective = MapObjective::new(hops, &scenario.full_objective(), scenario.commands, options.takeoff);
             let found = least_totals(hops, &[spot.post], &objective, allowed(budget.as_ref()), &silent)?;
             let (paths, totals) = found.into_parts();
             (paths, totals.into_iter().next())
@@ -218,7 +292,16 @@ fn site(
     };
     let of_totals = totals.as_ref().map(|totals| counted.iter().map(|node| totals[*node]).collect::<Vec<f64>>());
     let target_hops: Vec<Option<i16>> = goals.iter().map(|node| Some(out.hops[*node]).filter(|hops| *hops >= 0)).collect();
-    Ok(SiteRecord {
+    let path_to = |goal: &Spot| -> Result<Option<HopPath>, MapStudyError> {
+        let Some(path) = question.hops_to(goal, (hops, &out, &objective))?.map(|found| joined(hops, &found)) else {
+            return Ok(None);
+        };
+        Defect::unless_passed(&verify(hops, &path, spot.post, goal.post))?;
+        Ok(Some(path))
+    };
+    let flown = if question.trials { &prepared.goals[..] } else { &[] };
+    let paths = flown.iter().map(path_to).collect::<Result<_, _>>()?;
+    let record = SiteRecord {
         rank: 0,
         candidate: number,
         x_m: spot.at.x,
@@ -233,9 +316,13 @@ fn site(
         greatest_total: of_totals.as_ref().and_then(|totals| totals.iter().copied().reduce(f64::max)),
         targets_reached: target_hops.iter().flatten().count(),
         target_hops,
+        success: None,
+        success_missing: None,
+        target_success: Vec::new(),
         part,
         refusal: hops.refusal(spot.post).map(|refusal| format!("it {refusal}")),
-    })
+    };
+    Ok(Row { record, paths })
 }
 
 impl Parts {

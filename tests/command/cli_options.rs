@@ -115,7 +115,12 @@ const SLICE: [Trial; 8] = [
     ),
 ];
 
-const SITES: [Trial; 18] = [
+const SITES: [Trial; 19] = [
+    (
+        "--trials",
+        &["sites", "ground.tif", "--every", "9", "--scenario", "map.toml", "--target", "9,9"],
+        &["sites", "ground.tif", "--every", "9", "--scenario", "map.toml", "--target", "9,9", "--trials", "20"],
+    ),
     (
         "--width-mm",
         &["sites", "ground.tif", "--every", "5", "--scenario", "map.toml", "--plot", "sites.svg"],

@@ -189,3 +189,58 @@ fn targets_may_be_given_on_the_body() {
         "{answer}"
     );
 }
+
+#[test]
+fn trials_of_the_paths_to_targets_are_those_of_single_maps() {
+    let desk = Desk::with_dem();
+    let errors = [
+        "--scenario",
+        "map.toml",
+        "--set",
+        "uncertainty.takeoff_speed_sigma_fraction=0.03",
+        "--set",
+        "uncertainty.goal_tolerance_m=1",
+        "--set",
+        "uncertainty.seed=5",
+    ];
+    desk.write("two.csv", "x_m,y_m\n3,3\n9,9\n500,3\n");
+    for (policy, expected) in [("open-loop", true), ("replan", false)] {
+        let policy = format!("uncertainty.policy={policy}");
+        let ends = ["--target", "9,9", "--target", "15,3", "--trials", "60", "--set", &policy];
+        let words = [&["sites", "ground.tif", "--candidates", "two.csv", "-o", "sites.csv"][..], &errors, &ends].concat();
+        let answer = desk.json(&words);
+        assert_eq!(answer["trials"], 60, "{answer}");
+        let sites = answer["sites"].as_array().unwrap();
+        let mut some_fail = false;
+        for site in sites.iter().filter(|site| site["refusal"].is_null()) {
+            let start = format!("{},{}", site["x_m"], site["y_m"]);
+            for (goal, success) in ["9,9", "15,3"].iter().zip(site["target_success"].as_array().unwrap()) {
+                if start.replace(".0", "") == *goal {
+                    assert_eq!(*success, 1.0, "{site}");
+                    continue;
+                }
+                let of_map = ["--simulate", "--set", "uncertainty.trials=60", "--set", &policy];
+                let map = [&["map", "ground.tif", "--start", &start, "--goal", goal][..], &errors, &of_map].concat();
+                let map = desk.json(&map);
+                assert_eq!(map["goals"][0]["simulation"]["success_rate"], *success, "{site}: {goal}");
+                some_fail |= number(success) < 1.0;
+            }
+            let least = site["target_success"].as_array().unwrap().iter().map(number).fold(1.0, f64::min);
+            assert_eq!(number(&site["success"]), least, "{site}");
+        }
+        assert!(some_fail || !expected, "{answer}");
+        assert!(sites[2]["success"].is_null(), "{answer}");
+        assert!(desk.read("sites.csv").lines().next().unwrap().ends_with("success_to_target_1,success_to_target_2"));
+    }
+    // A target that no hop reaches has no share, and the reason.
+    let slow = ["--target", "9,9", "--trials", "5", "--set", "hopper.takeoff_speed_max_m_s=0.1"];
+    let answer = desk.json(&[&["sites", "ground.tif", "--every", "19", "--scenario", "map.toml"][..], &slow].concat());
+    let why = answer["sites"][0]["success_missing"].as_str().unwrap_or_default();
+    assert!(why.contains("no path to fly") && answer["sites"][0]["success"].is_null(), "{answer}");
+    // Without a target nothing is flown.
+    let ran = desk.run(&["sites", "ground.tif", "--every", "9", "--scenario", "map.toml", "--trials", "5"]);
+    assert!(ran.status == 2 && ran.stderr.contains("found trials of landing sites and no target"), "{ran:?}");
+    let size = desk.json(&["sites", "map.toml", "--every", "6", "--trials", "5", "--dry-run"]);
+    assert_eq!(size["trials_max"].as_u64().map(|trials| trials % 5), Some(0), "{size}");
+    assert!(size["searches_max"].as_u64().is_some_and(|searches| searches > 8), "{size}");
+}

@@ -258,7 +258,7 @@ fn tables(records: &Records) -> Vec<(&'static str, &'static str, Vec<String>, Ve
         ("Landings of trials (`simulate --output`), CSV and Parquet", "landings", landings, vec![]),
         ("Contacts of a mesh (`map --output`)", "contacts", header(|out| write_map_contacts_csv(&[], true, out)), vec![]),
         (
-            "`sites --output` (beside a column of hops for each target)",
+            "`sites --output` (beside columns for each target: hops, and the share of trials that arrives)",
             "sites",
             header(|out| sites.write_csv(out)),
             vec!["SiteRecord"],

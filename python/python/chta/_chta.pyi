@@ -164,6 +164,7 @@ class Draft:
         targets_m: Sequence[tuple[float, float]] = ...,
         stride: int = 1,
         auto_nodes: bool = False,
+        trials: bool = False,
         memory_max_bytes: int | None = None,
         threads: int | None = None,
         progress: _Progress | None = None,

@@ -261,18 +261,28 @@ class Scenario:
         targets_m: Iterable[XY] = (),
         stride: int = 1,
         node_spacing: str | float | None = None,
+        trials: int | None = None,
         memory_max_mib: int | None = None,
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> Sites:
-        """Landing sites ranked by what is reached from each."""
-        draft = self._draft
+        """Landing sites ranked by what is reached from each; with trials, also the share of them that arrives at each target."""
+        draft = self._draft if trials is None else self._draft.with_keys(_settings({"uncertainty.trials": trials}))
         if node_spacing is not None and node_spacing != "auto":
             draft = draft.with_keys(_settings({"search.node_spacing_max_m": node_spacing}))
         bytes_max = None if memory_max_mib is None else memory_max_mib << 20
         place = None if dem is None else os.fspath(dem)
         found = draft.sites(
-            place, list(candidates_m), every, list(targets_m), stride, node_spacing == "auto", bytes_max, threads, progress
+            place,
+            list(candidates_m),
+            every,
+            list(targets_m),
+            stride,
+            node_spacing == "auto",
+            trials is not None,
+            bytes_max,
+            threads,
+            progress,
         )
         return Sites(found)
 

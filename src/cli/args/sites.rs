@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use chta::{quantity::MapPoint, terrain::LonLat};
 use clap::Args as ClapArgs;
 
+use super::super::load::OwnKey;
 use super::{
     AnswerArgs, CommonArgs, lon_lat, map_point,
     maps::{NodeSpacing, SizeArgs, node_spacing},
@@ -44,6 +45,10 @@ pub(crate) struct SitesArgs {
     /// scenario's, or hops]
     #[arg(long, value_name = "AMOUNT[,AMOUNT]", value_delimiter = ',')]
     pub(crate) objective: Vec<String>,
+    /// Trials of the path from every candidate to each target, flown under the errors of [uncertainty]: the share that arrives [default: none
+    /// are flown]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) trials: Option<i64>,
     /// Exit with status 1 unless some candidate reaches all targets, or without targets any other node
     #[arg(long)]
     pub(crate) require_all: bool,
@@ -60,6 +65,13 @@ pub(crate) struct SitesArgs {
     pub(crate) answer: AnswerArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
+}
+
+impl SitesArgs {
+    /// The scenario key set by the number of trials; it is checked and written as a key of the scenario.
+    pub(crate) fn own_keys(&self) -> Vec<OwnKey<'static>> {
+        self.trials.map(|trials| ("--trials", "uncertainty", "trials", trials.into())).into_iter().collect()
+    }
 }
 
 /// Reads a count of at least one.

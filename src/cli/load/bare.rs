@@ -8,7 +8,7 @@ use chta::{
     terrain::MapPlace,
 };
 
-use super::{EndOptions, apply_options, look_at_keys, option_source, read_source, two_scenarios, unopened};
+use super::{EndOptions, OwnKey, apply_options, look_at_keys, option_source, read_source, two_scenarios, unopened};
 use crate::cli::{
     Failure,
     args::{CommonArgs, SearchArgs},
@@ -27,7 +27,7 @@ pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs, pu
 pub(crate) fn load_map(
     target: &Path,
     common: &CommonArgs,
-    (search, objective): (&SearchArgs, &[String]),
+    (search, objective, own): (&SearchArgs, &[String], &[OwnKey<'_>]),
     purpose: impl Fn(ScenarioEnds) -> Purpose,
     has_start: bool,
 ) -> Result<Bare, Failure> {
@@ -46,6 +46,9 @@ pub(crate) fn load_map(
         let amounts: Vec<toml::Value> = objective.iter().map(|amount| amount.trim().into()).collect();
         source.entries.forget("search", "effort");
         source.entries.set_by_option("--objective", "search", "objective", amounts.into());
+    }
+    for (option, table, name, value) in own {
+        source.entries.set_by_option(option, table, name, value.clone());
     }
     let dem = (!input.is_scenario()).then_some(input.file);
     of_source(source, dem, common, search, purpose(ends))

@@ -16,6 +16,7 @@ use super::{
         surface_legs::{Counted, LegOffers, Settling, SurfaceLegs},
     },
     Tour, TourLeg, TourQuestion, TourWork, VisitOrder, WhyLeftOut,
+    arrival::shortest_arrivals,
     table::{LegCosts, VisitRules, most_visits},
     within::{WithinBudgets, best_within},
 };
@@ -73,12 +74,20 @@ pub(super) struct LegQuestion<'q> {
     pub(super) budgets: Budgets,
     /// Totals of the objective above which a way is of no use.
     pub(super) at_most: Vec<(Amount, f64)>,
+    /// Whether a way counts that is no better by the objective, but less long outside of a layer at an end: what is left of a stretch to the
+    /// legs beside it may decide.
+    pub(super) by_outages: bool,
 }
 
 impl<'q> LegQuestion<'q> {
     /// The best way, whatever it takes.
     pub(super) const fn best(objective: &'q Objective) -> Self {
-        Self { objective, budgets: Budgets::NONE, at_most: Vec::new() }
+        Self { objective, budgets: Budgets::NONE, at_most: Vec::new(), by_outages: false }
+    }
+
+    /// The same with every way that may be the best beside some other leg.
+    pub(super) fn by_outages(self) -> Self {
+        Self { by_outages: true, ..self }
     }
 }
 
@@ -196,6 +205,21 @@ impl<'a> StopLegs<'a> {
         (0..count).flat_map(move |from| (0..count).map(move |to| [from, to]))
     }
 
+    /// Whether an outage may go on through an end of a leg.
+    pub(super) fn goes_on_outside(&self, pair: [usize; 2]) -> bool {
+        pair.iter().any(|stop| self.is_outside(*stop))
+    }
+
+    /// Whether a mission may go on from a stop outside of a layer.
+    pub(super) fn have_stops_outside(&self) -> bool {
+        (0..self.stops.len()).any(|stop| self.is_outside(stop))
+    }
+
+    /// Whether a mission goes on from a stop outside of a layer that may be left for a while.
+    fn is_outside(&self, stop: usize) -> bool {
+        stop > 0 && self.outages.any_outside(self.stops[stop].1.at)
+    }
+
     /// Whether a path leads from one stop to another over these nodes, whatever it takes.
     fn leads(&self, fields: &Fields, [from, to]: [usize; 2]) -> bool {
         fields.to(to).is_some_and(|field| field.of(self.stops[from].0).is_some())
@@ -218,15 +242,14 @@ impl<'a> StopLegs<'a> {
         if field.of(start).is_none() {
             return Ok(Ways::default());
         }
-        let LegQuestion { objective, budgets, at_most } = asked;
+        let LegQuestion { objective, budgets, at_most, by_outages } = asked;
         let RouteQuestion { commands, errors, cap, .. } = question.route;
         // A target is left by a hop that follows a landing, and a machine that begins has not landed.
         let settling = if from == 0 { Settling::BeforeAllBut(start) } else { Settling::BeforeAll };
         let by_first = budgets.all().all(|(amount, _)| amount == objective.first());
         // A stretch outside may go on through a stop: what is left of it decides beside the objective.
         let in_outages = !self.outages.are_none();
-        let goes_on = |stop: usize| stop > 0 && self.outages.any_outside(self.stops[stop].1.at);
-        let is_one = by_first && !(goes_on(from) || goes_on(to));
+        let is_one = by_first && !(*by_outages && self.goes_on_outside([from, to]));
         let hops_decide = objective.first() == Amount::Hops && by_first && !in_outages;
         let counted = if hops_decide { Counted::Known } else { Counted::All };
         let offers = LegOffers::new(&self.surface, settling, (commands, question.takeoff), errors);
@@ -246,6 +269,13 @@ impl<'a> StopLegs<'a> {
             let bounds = at_most.iter().copied().chain(known);
             let begins = if from == 0 { OutagePart::HELD } else { OutagePart::OPEN };
             let tracked = Tracked::new(objective, budgets).under(self.outages.most(), begins);
+            let tracked = if is_one || !self.is_outside(to) {
+                tracked
+            } else {
+                let (ends, pairs) = shortest_arrivals(&legs.offers, (start, goal.0), &self.outages, &self.meter)?;
+                legs.count(pairs);
+                tracked.ending_with(ends)
+            };
             let tracked = bounds.fold(tracked, |tracked, (amount, most)| tracked.at_most(amount, most));
             let mut run = Run::new(&legs, legs.ends(), tracked, cap);
             let best = run.until(is_one)?;

@@ -10,11 +10,15 @@
 //! those that some mission within the budgets may have, and so has a state of the table.
 
 mod allowance;
+mod arrival;
 mod legs;
 mod order;
 mod table;
 #[cfg(test)]
 mod tests;
+mod through;
+#[cfg(test)]
+mod through_tests;
 mod within;
 
 use super::{Amounts, OverBudget, RouteError, RouteGap, RoutePath, RouteQuestion, SurfaceNodes};

@@ -36,6 +36,12 @@ impl LegCosts {
         Self { outages, ..self }
     }
 
+    /// The same where every leg is by itself, whatever lies outside before and after it: no mission takes less.
+    pub(super) fn apart(mut self) -> Self {
+        self.outages.clear();
+        self
+    }
+
     /// How the ways of a leg are outside them, each with a part for every layer.
     pub(super) fn set_outages(&mut self, [from, to]: [usize; 2], parts: Vec<Vec<OutagePart>>) {
         self.parts[from * (self.targets + 1) + to] = parts;

@@ -10,6 +10,7 @@ use super::{
     allowance::OtherLegs,
     legs::{Fields, LegQuestion, Legs, StopLegs},
     table::{LegCosts, VisitRules, Visits, most_visits},
+    through::join_through_outages,
 };
 use crate::progress::Cancelled;
 
@@ -29,18 +30,25 @@ pub(super) fn best_within(stops: &StopLegs<'_>, question: &TourQuestion<'_>, fie
     let RouteQuestion { objective, budgets, cap, .. } = question.route;
     let rules = VisitRules { order: question.order, returns: question.returns, allowed: u16::MAX };
     let mut legs = stops.legs(question, fields, |_| Some(LegQuestion::best(objective)))?;
-    let best = legs.costs();
+    let has_all_ways = join_through_outages(stops, question, fields, rules, &mut legs)?;
+    let mut best = legs.costs();
     let others: Vec<(Amount, f64)> = budgets.all().filter(|(amount, _)| *amount != objective.first()).collect();
-    let (unbound, mut capped) = most_visits(&best, rules, (objective, &Budgets::NONE, cap))?;
+    let (mut unbound, mut capped) = most_visits(&best, rules, (objective, &Budgets::NONE, cap))?;
     if budgets.exceeded_by(&unbound.totals).next().is_none() {
         capped |= legs.capped;
         return Ok(WithinBudgets { visits: unbound, legs, best, capped });
+    }
+    if !has_all_ways {
+        let of_leg = |pair| stops.goes_on_outside(pair).then(|| LegQuestion::best(objective).by_outages());
+        legs.join(stops.legs(question, fields, of_leg)?);
+        best = legs.costs();
+        (unbound, _) = most_visits(&best, rules, (objective, &Budgets::NONE, cap))?;
     }
     let mut visited_max = visited_within(&best, rules, (objective.first(), budgets.most(objective.first())))?;
     for (amount, most) in &others {
         let alone = Objective::of(*amount);
         let least = stops.legs(question, fields, |_| Some(LegQuestion::best(&alone)))?;
-        visited_max = visited_max.min(visited_within(&least.costs(), rules, (*amount, *most))?);
+        visited_max = visited_max.min(visited_within(&least.costs().apart(), rules, (*amount, *most))?);
         legs.join(least);
     }
     let (known, _) = most_visits(&legs.costs(), rules, (objective, budgets, cap))?;
@@ -62,18 +70,18 @@ fn visited_within(costs: &LegCosts, rules: VisitRules, (amount, most): (Amount, 
 }
 
 /// What is known before legs have Pareto sets.
-struct Bounds<'v> {
+pub(super) struct Bounds<'v> {
     /// A mission within the budgets.
-    known: &'v Visits,
+    pub(super) known: &'v Visits,
     /// The best one without budgets.
-    unbound: &'v Visits,
+    pub(super) unbound: &'v Visits,
     /// No more targets can be visited.
-    visited_max: u32,
+    pub(super) visited_max: u32,
 }
 
 impl Bounds<'_> {
     /// Whether the known mission visits as many targets as any can.
-    fn is_largest(&self) -> bool {
+    pub(super) fn is_largest(&self) -> bool {
         self.known.set().count_ones() == self.visited_max
     }
 
@@ -84,12 +92,12 @@ impl Bounds<'_> {
     }
 
     /// Whether no mission within the budgets is better than the known one.
-    fn prove(&self, objective: &Objective) -> bool {
+    pub(super) fn prove(&self, objective: &Objective) -> bool {
         objective.amounts().iter().all(|amount| self.is_least(*amount))
     }
 
     /// What is left to each leg of the missions that may be better than the known one.
-    fn allowances(
+    pub(super) fn allowances(
         &self,
         legs: &Legs,
         rules: VisitRules,
@@ -114,18 +122,18 @@ impl Bounds<'_> {
 }
 
 /// What is left of a total of an amount to each leg.
-struct Allowance {
-    amount: Amount,
-    total: f64,
+pub(super) struct Allowance {
+    pub(super) amount: Amount,
+    pub(super) total: f64,
     /// What the other legs take at least; `None` of an amount that does not add up, of which every leg may have the total.
-    others: Option<OtherLegs>,
+    pub(super) others: Option<OtherLegs>,
     /// Whether ways are compared by the amount, beside the objective.
-    is_compared: bool,
+    pub(super) is_compared: bool,
 }
 
 /// What the ways of a leg are searched for; `None` if no mission that may be better has the leg.
-fn of_leg<'q>(allowances: &[Allowance], pair: [usize; 2], objective: &'q Objective) -> Option<LegQuestion<'q>> {
-    let mut asked = LegQuestion::best(objective);
+pub(super) fn of_leg<'q>(allowances: &[Allowance], pair: [usize; 2], objective: &'q Objective) -> Option<LegQuestion<'q>> {
+    let mut asked = LegQuestion::best(objective).by_outages();
     for Allowance { amount, total, others, is_compared } in allowances {
         let most = others.as_ref().map_or(Some(*total), |others| others.allowance(pair, *total))?;
         if *is_compared {

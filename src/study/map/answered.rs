@@ -1,11 +1,10 @@
 //! The search, the paths and their check, the trials, and the answer that they make.
 
-use std::sync::Arc;
-
 use super::{
     super::Defect,
     MapQuestion, MapStudyError, PreparedMap, RefusedNodes, Spot,
     aim::{Aim, allowed},
+    flown::FlownPath,
     refused::refused_nodes,
 };
 use crate::{
@@ -15,16 +14,14 @@ use crate::{
     planner::{Amount, TotalBudget},
     progress::Progress,
     reach::map::{
-        HopMap, Journey, MapHop, MapObjective, Mobility, Post, PostHops, Search, Source, costs_to_go, joined, least_totals,
-        mobility, path_hops, path_hops_by, risks_flown_over, search, totals_along, verify,
+        HopMap, Journey, MapHop, MapObjective, Mobility, Post, PostHops, Search, Source, joined, least_totals, mobility, search,
+        totals_along, verify,
     },
     report::{
         AmountRecord, DeratingRecord, GoalRecord, HopRecord, MapAnswer, MapBudgetRecord, MapObjectiveRecord, MapSummary,
-        PropellantShortage, SimulationRecord, SuccessEstimate, TotalsRecord,
+        PropellantShortage, TotalsRecord,
     },
-    scenario::UncertaintyKeys,
     study::{Extremes, TrialGround, constant_gravity_warnings, objective::short_hops, sense::unplanned_bounces},
-    uncertainty::{Mission, Policy, Simulation},
 };
 
 /// What marks a post without a predecessor in [`MapStudy::predecessors`]: it was not reached, or has no elevation.
@@ -95,13 +92,6 @@ fn beside_objective(question: &MapQuestion<'_>, flies: bool) -> Vec<String> {
          the map goes on by reliability, or by hops and effort"
     );
     question.returns.then_some(back).into_iter().chain(flies.then_some(flown)).collect()
-}
-
-/// How reliably the path to a goal is flown.
-#[derive(Clone, Debug)]
-struct FlownPath {
-    trials: SimulationRecord,
-    estimate: Option<SuccessEstimate>,
 }
 
 impl PreparedMap {
@@ -200,14 +190,7 @@ impl PreparedMap {
             .collect::<Result<Vec<_>, _>>()?;
         let back = question.returns.then(|| search(&hops, &sources, asked(Journey::Return, None), progress)).transpose()?;
         let mobility = question.mobility.then(|| mobility(&hops, progress)).transpose()?;
-        let hops_to = |goal: &Spot| {
-            let nodes = out.path(&hops, goal.post);
-            let along = |nodes: Vec<Post>| match &aim {
-                Aim::Hops(_) => path_hops(&hops, &nodes, options.takeoff),
-                Aim::Least(..) => path_hops_by(&hops, &nodes, &objective, options.takeoff),
-            };
-            nodes.map(along).transpose()
-        };
+        let hops_to = |goal: &Spot| question.hops_to(goal, (&hops, &out, &objective));
         let goal_hops = self.goals.iter().map(hops_to).collect::<Result<Vec<_>, _>>()?;
         let paths: Vec<_> = goal_hops.iter().map(|found| found.as_ref().map(|found| joined(&hops, found))).collect();
         for (path, goal) in paths.iter().zip(&self.goals) {
@@ -254,49 +237,9 @@ impl PreparedMap {
     }
 
     /// The ground as the warnings about trials see it.
-    fn trial_ground(&self, paths: &[Option<HopPath>]) -> TrialGround {
+    pub(in crate::study) fn trial_ground(&self, paths: &[Option<HopPath>]) -> TrialGround {
         let hops = paths.iter().flatten().map(|path| path.hops.len()).max().unwrap_or(0);
         TrialGround::of_map(&self.ground, hops)
-    }
-
-    /// Flies the path to every reachable goal many times, and in the fixed trials of an estimate if there are errors: a robot that replans goes to the goal of its path, whatever others are nearer.
-    fn flown(
-        &self,
-        question: &MapQuestion<'_>,
-        paths: &[Option<HopPath>],
-        keys: &UncertaintyKeys,
-        progress: &dyn Progress,
-    ) -> Result<Vec<Option<FlownPath>>, MapStudyError> {
-        let options = &question.scenario.search;
-        let replans = keys.policy == Policy::Replan;
-        let hops = replans.then(|| PostHops::over(self.planning.clone(), self.lattice)).transpose()?;
-        let fly = |goal: &Spot, path: &HopPath| {
-            let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
-            let mut mission = Mission::over_dem(self.ground.clone(), path.clone(), first.takeoff, last.landing);
-            if let Some(hops) = &hops {
-                mission = if question.weighs_risk(&keys.errors) {
-                    let risks = risks_flown_over(hops, &self.ground, goal.post, (&keys.errors, options.takeoff), progress)?;
-                    mission.with_reliable_replanning_over_posts(Arc::new(risks))
-                } else {
-                    let criterion = (options.effort, options.takeoff);
-                    mission.with_replanning_over_posts(Arc::new(costs_to_go(hops, goal.post, criterion, progress)?))
-                };
-                if !question.scenario.derating.is_none() {
-                    mission = mission.planned_over(self.planning.clone());
-                }
-            }
-            let (simulation, options) = (Simulation::new(&mission, keys.errors.clone())?, keys.options());
-            let estimate = if keys.errors.is_none() {
-                None
-            } else {
-                let success_estimated = simulation.estimated_success(&options, progress)?;
-                Some(SuccessEstimate { success_estimated, success_policy: keys.policy })
-            };
-            let summary = simulation.run(&options, &mut (), progress)?;
-            Ok(Some(FlownPath { trials: SimulationRecord::new(&summary, path.hops.len()), estimate }))
-        };
-        let goals = self.goals.iter().zip(paths);
-        goals.map(|(goal, path)| path.as_ref().map_or(Ok(None), |path| fly(goal, path))).collect()
     }
 
     /// The fewest hops of any path from the nearest start to a goal, by the speeds alone.

@@ -28,6 +28,12 @@ pub enum MapStudyError {
     /// No start.
     #[error("found no start, expected at least one: give terrain.start_m, or the longitude and latitude terrain.start_lonlat_deg")]
     NoStart,
+    /// Trials without a target.
+    #[error(
+        "found trials of landing sites and no target, expected at least one: trials fly the path from a site to a target; give a target, or a \
+         scenario with a goal or targets, or ask for no trials"
+    )]
+    NoTargetOfTrials,
     /// A start or goal off the map.
     #[error("{name} ({:.3}, {:.3}) m lies off the map, which covers {bounds}", at.x, at.y)]
     OffMap {

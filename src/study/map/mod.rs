@@ -6,6 +6,7 @@
 mod aim;
 mod answered;
 mod error;
+mod flown;
 mod memory;
 mod prepared;
 mod question;

@@ -58,6 +58,8 @@ pub enum Purpose {
     MapMesh,
     /// Landing sites over a DEM.
     Sites {
+        /// With trials along the paths to the targets.
+        trials: bool,
         /// Whether the scenario's own goal, or its targets, count.
         ends: ScenarioEnds,
     },
@@ -125,7 +127,7 @@ impl Purpose {
         Self::Fan,
         Self::Map { goals: true, effort: true, amounts: true, trials: true, ends: ScenarioEnds::Ignored },
         Self::MapMesh,
-        Self::Sites { ends: ScenarioEnds::Offered },
+        Self::Sites { trials: true, ends: ScenarioEnds::Offered },
     ];
 
     /// The name of the question.
@@ -148,7 +150,7 @@ impl Purpose {
     /// Whether the scenario's own start and goal count beside, or in place of, those of the caller.
     pub const fn scenario_ends(self) -> ScenarioEnds {
         match self {
-            Self::Map { ends, .. } | Self::Sites { ends } => ends,
+            Self::Map { ends, .. } | Self::Sites { ends, .. } => ends,
             _ => ScenarioEnds::Ignored,
         }
     }
@@ -158,7 +160,7 @@ impl Purpose {
     fn uses(self, key: &Key, weighs: Weighs) -> bool {
         let Weighs { risk: weighs_risk, success, errors, amounts } = weighs;
         let on_a_dem = matches!(self, Self::Fan | Self::Map { .. } | Self::Sites { .. });
-        let flies = matches!(self, Self::Run | Self::Simulate | Self::Map { trials: true, .. });
+        let flies = matches!(self, Self::Run | Self::Simulate | Self::Map { trials: true, .. } | Self::Sites { trials: true, .. });
         let by_risk = matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Compare);
         let by_objective = amounts != Amounts::None && self.plans_by_objective();
         let weighs_risk = weighs_risk || (amounts == Amounts::WithRisk && by_objective);
@@ -198,9 +200,10 @@ impl Purpose {
             }
             ("search", _) if self == Self::MapMesh => false,
             ("search", "effort" | "takeoff_angle" | "split") if by_objective => true,
-            ("search", "effort") => {
-                !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Sites { .. } | Self::Map { effort: false, .. })
-            }
+            ("search", "effort") => !matches!(
+                self,
+                Self::Hop | Self::Trade | Self::Fan | Self::Sites { trials: false, .. } | Self::Map { effort: false, .. }
+            ),
             ("search", "takeoff_angle" | "split" | "risk" | "risk_extra_hops_max") if by_success => true,
             ("search", "takeoff_angle") => {
                 by_objective
@@ -208,13 +211,13 @@ impl Purpose {
                         self,
                         Self::Trade
                             | Self::Fan
-                            | Self::Sites { .. }
+                            | Self::Sites { trials: false, .. }
                             | Self::Map { goals: false, effort: false, amounts: false, .. }
                     )
             }
             ("search", "split") => !on_a_dem && !matches!(self, Self::Hop | Self::Trade),
             // A robot that replans over a map weighs it.
-            ("search", "risk") if matches!(self, Self::Map { trials: true, .. }) => true,
+            ("search", "risk") if matches!(self, Self::Map { trials: true, .. } | Self::Sites { trials: true, .. }) => true,
             ("search", "risk" | "risk_extra_hops_max") => by_risk,
             ("budget", "estimated_success_min") => by_risk || matches!(self, Self::Require | Self::Trade),
             ("budget", _) | ("search", "objective") => self.plans_by_objective(),

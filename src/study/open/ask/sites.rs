@@ -31,6 +31,8 @@ pub struct SitesAsked {
     pub stride: usize,
     /// One hop over level ground spans 8 nodes or more, in place of `search.node_spacing_max_m`.
     pub auto_nodes: bool,
+    /// Also trials of the paths to the targets, as many as `uncertainty.trials` says.
+    pub trials: bool,
     /// The most memory, bytes, that a map may need.
     pub memory_max_bytes: Option<u64>,
 }
@@ -42,7 +44,7 @@ impl Draft {
     /// [`AskError`].
     pub fn sites(&self, asked: &SitesAsked, progress: &dyn Progress) -> Result<Reply, AskError> {
         let ends = if asked.dem.is_some() { ScenarioEnds::Ignored } else { ScenarioEnds::Offered };
-        let open = self.clone().map(asked.dem.clone(), Purpose::Sites { ends })?;
+        let open = self.clone().map(asked.dem.clone(), Purpose::Sites { trials: asked.trials, ends })?;
         let drives = open.scenario.drives().is_some();
         refuse(&[(drives, "a scenario that drives")], "landing sites are ranked by hops; set drive.travel = \"hop\"")?;
         let map = MapQuestion {
@@ -59,7 +61,7 @@ impl Draft {
             ranks_sites: true,
             predecessors: false,
             refusals: false,
-            trials: false,
+            trials: asked.trials,
             hops_max: None,
             amounts: Vec::new(),
             memory_max_bytes: asked.memory_max_bytes,
