@@ -31,7 +31,7 @@ const MOST_LISTED: usize = 12;
 pub(super) const ELLIPSE_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.45 };
 const CASING_PEN: Pen = Pen { colour: WHITE, width_mm: 0.95 };
 /// The greatest height of the map, which shares a page of A4 with its insets.
-const TALL_MM: f64 = 140.0;
+const TALL_MM: f64 = 134.0;
 
 /// Draws the scattered landings of a path's hops and their 95 % ellipses around the planned path, over a hillshade.
 ///
