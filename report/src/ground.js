@@ -91,8 +91,24 @@ export function groundOf(mission) {
   return {
     posts: posts ? new Posts(posts) : null,
     facets: facets ? new Facets(facets) : null,
-    layers: (layers ?? []).map((layer) => ({ ...layer, mask: decoded(layer.bits, Uint8Array) })),
+    layers: marked(layers ?? [], posts),
   };
+}
+
+// Each layer has stripes of its own colour and direction: apart from the hillshade and from one another for colour-blind readers and in grey.
+const STRIPES = [
+  { colour: [213, 94, 0], turn_deg: 135, covers: (row, column) => (row + column) % 4 < 2 },
+  { colour: [0, 114, 178], turn_deg: 45, covers: (row, column) => (row + 3 * column) % 4 < 2 },
+  { colour: [204, 121, 167], turn_deg: 0, covers: (row) => row % 4 < 2 },
+  { colour: [0, 158, 115], turn_deg: 90, covers: (row, column) => column % 4 < 2 },
+];
+
+/** The layers that refuse contact at any post, with their share of all posts and their stripes. */
+function marked(layers, posts) {
+  const all = posts ? posts.rows * posts.columns : 0;
+  const masked = layers.map((layer) => ({ ...layer, mask: decoded(layer.bits, Uint8Array) }));
+  for (const layer of masked) layer.share = Array.from({ length: all }).reduce((sum, _, at) => sum + isMarked(layer, at), 0) / Math.max(1, all);
+  return masked.filter(({ share }) => share > 0).map((layer, number) => ({ ...layer, stripes: STRIPES[number % STRIPES.length] }));
 }
 
 /** Whether a post is marked in a layer. */

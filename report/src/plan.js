@@ -3,7 +3,7 @@
 import { drawnToWidth, html, path, svg, tickDecimals, ticks } from './dom.js';
 import { heightBands, isMarked } from './ground.js';
 import { selectByArrows } from './selection.js';
-import { count, fixed } from './words.js';
+import { count, fixed, percent } from './words.js';
 
 const LEFT = 74;
 const RIGHT = 10;
@@ -118,7 +118,11 @@ export function planFigure(section, mission, ground, selection) {
     if (state.bands && ground.posts) {
       for (const { from_m, to_m, colour } of heightBands(...ground.posts.range_m)) items.push(swatch(`rgb(${colour})`, `${fixed(from_m)} to ${fixed(to_m)} m`));
     }
-    for (const layer of ground.layers) if (state.layers.has(layer.name)) items.push(swatch('', layer.name, 'striped'));
+    for (const { name, share, stripes } of ground.layers) {
+      if (!state.layers.has(name)) continue;
+      const colour = `rgb(${stripes.colour})`;
+      items.push(swatch(`repeating-linear-gradient(${stripes.turn_deg}deg, ${colour} 0 3px, #fff 3px 6px)`, `${name}: ${percent(share)} of the posts`, 'striped'));
+    }
     if (ground.posts) items.push(html('li', {}, thinned(mission.ground.posts)));
     if (ground.facets) items.push(html('li', {}, cutOut(mission.ground.facets)));
     legend.replaceChildren(...items);
@@ -128,8 +132,8 @@ export function planFigure(section, mission, ground, selection) {
 /** Which posts of the DEM the page holds, in words. */
 function thinned({ rows, columns, of_rows, of_columns, stride }) {
   if (rows === of_rows && columns === of_columns) return `Hillshade of all ${rows} × ${columns} posts of the DEM.`;
-  const every = stride === 1 ? 'posts' : `every ${stride}th post (thinned to keep the page small)`;
-  return `Hillshade of ${rows} × ${columns} posts about the path: ${every} of the ${of_rows} × ${of_columns} of the DEM. The answer was computed with all of them.`;
+  const every = stride === 1 ? '' : `, thinned to one post in ${stride} each way to keep the page small`;
+  return `Hillshade of ${rows} × ${columns} posts about the path${every}; the DEM has ${of_rows} × ${of_columns}, with all of which the answer was computed.`;
 }
 
 function cutOut({ corners_count, of_facets }) {
@@ -188,8 +192,8 @@ function postsPicture({ posts, layers }, state) {
         const grey = Number.isNaN(light) ? 0.7 : 0.35 + 0.65 * Math.max(0, Math.min(1, light));
         const band = bands.find(({ to_m }) => z_m <= to_m);
         colour = (band?.colour ?? [255, 252, 245]).map((part) => part * grey);
-        // Stripes stay apart from the hillshade in print.
-        if ((row + column) % 4 < 2 && shown.some((layer) => isMarked(layer, index))) colour = [213, 94, 0].map((part) => 0.75 * part + 0.25 * 255 * grey);
+        const over = shown.find((layer) => layer.stripes.covers(row, column) && isMarked(layer, index));
+        if (over) colour = over.stripes.colour.map((part) => 0.75 * part + 0.25 * 255 * grey);
       }
       image.data.set([...colour, 255], 4 * index);
     }

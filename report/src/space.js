@@ -56,7 +56,8 @@ export function spaceFigure(section, mission, ground, selection) {
     html('label', { class: 'no-print' }, html('input', { type: 'checkbox', id: 'see-through', checked: ground.facets !== null, onchange: (event) => view.seeThrough(event.target.checked) }), ' see through the ground'),
     html('span', { class: 'no-print' }, 'from ', [['above', [0, -0.0001, 1]], ['south', [0.25, -1, 0.65]], ['west', [-1, -0.25, 0.65]]].map(([name, direction]) => [html('button', { type: 'button', onclick: () => view.look(direction) }, name), ' '])),
   );
-  section.append(controls, frame, html('p', { class: 'note' }, 'Drag to turn, wheel or pinch to zoom, right button or two fingers to move. Click an arc to select its hop.'));
+  const tinted = ground.layers.length > 0 ? ' Ground in the colour of a layer, as in the map, refuses contact.' : '';
+  section.append(controls, frame, html('p', { class: 'note' }, `Drag to turn, wheel or pinch to zoom, right button or two fingers to move. Click an arc to select its hop.${tinted}`));
   drawnToWidth(frame, (width) => view.resize(width, Math.round(Math.min(560, Math.max(280, 0.62 * width)))));
   selection.listen(() => view.mark(selection));
   view.mark(selection);
@@ -129,7 +130,8 @@ class View {
     const positions = new Float32Array(3 * rows * columns);
     const colours = new Float32Array(3 * rows * columns);
     const isGap = new Uint8Array(rows * columns);
-    const [plain, marked] = [new Color('#c9c2b6'), new Color('#e0a070')];
+    const plain = new Color('#c9c2b6');
+    const tints = layers.map(({ stripes }) => new Color(`rgb(${stripes.colour})`).lerp(plain, 0.45));
     for (let row = 0; row < rows; row += 1) {
       for (let column = 0; column < columns; column += 1) {
         const [i, at] = [row * columns + column, row * stride * posts.columns + column * stride];
@@ -137,7 +139,7 @@ class View {
         isGap[i] = Number.isNaN(z) ? 1 : 0;
         const place = [posts.west_m + column * stride * posts.dx_m, posts.north_m - row * stride * posts.dy_m, Number.isNaN(z) ? this.middle[2] : z];
         positions.set(this.#local([place]), 3 * i);
-        (layers.some((layer) => isMarked(layer, at)) ? marked : plain).toArray(colours, 3 * i);
+        (tints[layers.findIndex((layer) => isMarked(layer, at))] ?? plain).toArray(colours, 3 * i);
       }
     }
     const corners = [];

@@ -104,6 +104,28 @@ async function gridIsLookedUp(tab, trade) {
   }
 }
 
+/** A layer that refuses contact somewhere has a box and its share of the posts in the legend; without its mark it is off the map. */
+async function layersAreShown(tab, layers) {
+  const picture = () => tab.value(`document.querySelector('#plan .under canvas').toDataURL()`);
+  const legend = () => tab.value(`document.querySelector('#plan .legend').textContent`);
+  const boxes = await tab.value(`[...document.querySelectorAll('#plan .controls label')].map((label) => label.textContent.trim())`);
+  const whole = await picture();
+  // In base64, zeros are As.
+  for (const { name, bits } of layers) {
+    const marks = /[^A=]/.test(bits);
+    assert.equal(boxes.includes(name), marks, `${name}: a box`);
+    assert.equal((await legend()).includes(`${name}: `), marks, `${name}: the legend`);
+    if (!marks) continue;
+    const press = `[...document.querySelectorAll('#plan .controls label')].find((label) => label.textContent.trim() === ${JSON.stringify(name)}).querySelector('input').click(), true`;
+    await tab.value(press);
+    assert.ok(!(await legend()).includes(`${name}: `), `${name}: still in the legend`);
+    assert.notEqual(await picture(), whole, `${name}: still on the map`);
+    await tab.value(press);
+    assert.equal(await picture(), whole, `${name}: not as before`);
+  }
+  return layers.length;
+}
+
 /** The view in three dimensions changes with the exaggeration and the keys. */
 async function spaceTurns(tab) {
   const picture = () => tab.value(`document.querySelector('#space canvas').toDataURL()`);
@@ -154,6 +176,16 @@ async function drive(chromium, folder) {
     parts.push(`${await sliderMoves(tab, plan.path, plan.scenario.body.gravity_m_s2)} sliders`);
     const worst = await tab.value(`document.getElementById('self-check')?.dataset.worst ?? '0'`);
     assert.ok(Number(worst) < 1e-9, `the drawn arcs are off by ${worst}`);
+  }
+  const { posts, layers } = JSON.parse(await tab.value(`document.getElementById('ground').textContent`));
+  if (layers) parts.push(`${await layersAreShown(tab, layers)} layers`);
+  if (posts) {
+    const said = await tab.value(`document.querySelector('#plan .legend').textContent`);
+    const isWhole = posts.rows === posts.of_rows && posts.columns === posts.of_columns;
+    assert.ok(posts.rows <= 512 && posts.columns <= 512, `${posts.rows} × ${posts.columns} posts`);
+    assert.ok(said.includes(`${posts.rows} × ${posts.columns} posts`) && said.includes(`the DEM has ${posts.of_rows} × ${posts.of_columns}`) !== isWhole, said);
+    assert.equal(said.includes(`thinned to one post in ${posts.stride} each way`), posts.stride > 1, said);
+    if (posts.stride > 1) parts.push('thinned');
   }
   if (held['trade.json']) await gridIsLookedUp(tab, held['trade.json']);
   if (await tab.value(`Boolean(document.querySelector('#space canvas'))`)) {

@@ -7,7 +7,7 @@ use std::{
 
 use chta::{
     chain::csv::write_chain_csv,
-    figure::{FigureError, Picture, SeenFrom},
+    figure::{FigureError, Picture, PictureFormat, SeenFrom},
     path::HopPath,
     report::{CrsRecord, DocumentKind, MapKnowledge, write_path_csv, write_travel_csv},
     study::{
@@ -30,18 +30,23 @@ use super::{
 /// The kind of the answer, which a run accepts as input to repeat it.
 const RESULT: &str = "result.json";
 
+/// The names of a picture, as SVG and as PNG.
+type PictureNames = [&'static str; 2];
+
 /// The picture of the plan.
-const PICTURE: &str = "path.svg";
+const PICTURE: PictureNames = ["path.svg", "path.png"];
 
 /// The key postures of a robot with legs.
-const POSTURES: &str = "postures.svg";
+const POSTURES: PictureNames = ["postures.svg", "postures.png"];
 
 /// The pictures of the trials.
-const TRIAL_PICTURES: [&str; 2] = ["trials.svg", "landings.svg"];
+const TRIAL_PICTURES: [PictureNames; 2] = [["trials.svg", "trials.png"], ["landings.svg", "landings.png"]];
 
-/// Files that only some runs have: those left by an earlier run that had a path, trials or another map would contradict this one.
-const OF_SOME_RUNS: [&str; 7] =
-    ["chain.csv", "path.geojson", "path.prj", "simulation.json", TRIAL_PICTURES[0], TRIAL_PICTURES[1], POSTURES];
+/// Files that only some runs have: those left by an earlier run that had a path, trials, another map or other pictures would contradict this one.
+const OF_SOME_RUNS: [&str; 4] = ["chain.csv", "path.geojson", "path.prj", "simulation.json"];
+
+/// The most pages of a picture: those of trials.
+const PAGES_MAX: usize = 3;
 
 /// The files of a run before they are written.
 #[derive(Debug)]
@@ -54,6 +59,8 @@ pub(crate) struct RunFolder<'a> {
     beside: Vec<(Pending<'a>, Vec<u8>)>,
     /// The file of the page, until its content is known.
     page: Option<PageFile<'a>>,
+    /// The format of its pictures.
+    pictures: PictureFormat,
 }
 
 /// Makes the folder of the files, unless it exists.
@@ -76,7 +83,14 @@ impl<'a> RunFolder<'a> {
             made(&args.output)?;
         }
         let page = args.report.as_deref().map(|file| PageFile::begin("--report", file)).transpose()?;
-        Ok(Self { folder: &args.output, files: Vec::new(), pages: Vec::new(), beside: Vec::new(), page })
+        Ok(Self {
+            folder: &args.output,
+            files: Vec::new(),
+            pages: Vec::new(),
+            beside: Vec::new(),
+            page,
+            pictures: args.pictures.into(),
+        })
     }
 
     /// The page of the documents, if there is one.
@@ -106,7 +120,11 @@ impl<'a> RunFolder<'a> {
     }
 
     /// Adds a picture, with a file for each page.
-    fn picture(&mut self, name: &'static str, drawn: Result<Picture, FigureError>) -> Result<(), Failure> {
+    fn picture(&mut self, [svg, png]: PictureNames, drawn: Result<Picture, FigureError>) -> Result<(), Failure> {
+        let name = match self.pictures {
+            PictureFormat::Svg => svg,
+            PictureFormat::Png => png,
+        };
         let mut pages = pictures::pages(drawn, Path::new(name))?.into_iter();
         self.files.extend(pages.next().map(|(_, first)| (name, first)));
         self.pages.extend(pages);
@@ -248,9 +266,9 @@ impl<'a> RunFolder<'a> {
         pending.extend(beside);
         output::finish(pending)?;
         let is_stale = |name: &PathBuf| !names.contains(&name.display().to_string());
-        // Trials have at most three pages.
-        let further = [2, 3].map(|number| pictures::page_file(Path::new(TRIAL_PICTURES[0]), number));
-        for stale in OF_SOME_RUNS.into_iter().map(PathBuf::from).chain(further).filter(is_stale) {
+        let drawn = [PICTURE, POSTURES].into_iter().chain(TRIAL_PICTURES).flatten().map(Path::new);
+        let drawn = drawn.flat_map(|first| (1..=PAGES_MAX).map(move |number| pictures::page_file(first, number)));
+        for stale in OF_SOME_RUNS.into_iter().map(PathBuf::from).chain(drawn).filter(is_stale) {
             let _ = fs::remove_file(folder.join(stale));
         }
         Ok(format!("written to {}: {}", folder.display(), names.join(", ")))

@@ -13,7 +13,7 @@ use super::{
     mesh_oblique::{Oblique, named},
     mesh_paint::{Paint, PaintedContact},
     palette::WHITE,
-    sheet::Sheet,
+    sheet::{Pen, Place, Sheet},
     ticks::short,
 };
 use crate::{
@@ -106,6 +106,12 @@ pub fn draw_mesh_reach(figure: &MeshReachFigure<'_>) -> Result<Picture, FigureEr
     Ok(Picture::page(sheet, end_mm + 2.5))
 }
 
+/// White, in a thin frame.
+fn no_contact_symbol(sheet: &mut Sheet, (x, y): Place) {
+    let corners = keys::rectangle((x - 3.0, y - 1.5), (x + 3.0, y + 1.5));
+    sheet.line(corners.iter().copied().chain([corners[0]]).collect(), Pen { colour: NOT_REACHED, width_mm: 0.15 });
+}
+
 impl MeshReachFigure<'_> {
     /// The contacts with their classes: bands of hops, and one for those that are not reached.
     fn painted(&self, classes: &HopClasses) -> Vec<PaintedContact> {
@@ -160,7 +166,7 @@ impl MeshReachFigure<'_> {
         if self.contacts.iter().any(|contact| contact.returns.is_some()) {
             found.push((Swatch::Striped(colours[0]), format!("reached, no way back found: {}", counted(one_way))));
         }
-        found.push((Swatch::Fill(WHITE), "no contact nearby".to_owned()));
+        found.push((Swatch::Symbol(no_contact_symbol), "no contact nearby".to_owned()));
         found
     }
 

@@ -10,6 +10,7 @@ use super::{
     mesh_oblique::{Oblique, named},
     mesh_table,
     palette::{BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, WHITE},
+    picture::{PAGE_HEIGHT_MM, PageBreak},
     sheet::{Pen, Place, Sheet},
 };
 use crate::{
@@ -107,9 +108,17 @@ pub fn draw_mesh_route(figure: &MeshRouteFigure<'_>) -> Result<Picture, FigureEr
     let top_mm = keys::draw(&mut sheet, &figure.entries(), head_mm + 2.0) + 7.0;
     let end_mm = figure.oblique(&mut sheet, &around, &flights, top_mm);
     let end_mm = figure.plan(&mut sheet, &around, end_mm + 2.0) + 1.5;
-    let end_mm =
-        figure.routes.iter().fold(end_mm, |end_mm, route| mesh_table::draw(&mut sheet, route.name, route.path, end_mm) + 1.5);
-    Ok(Picture::page(sheet, end_mm + 2.5))
+    let (mut end_mm, mut page_mm, mut breaks) = (end_mm, 0.0, Vec::new());
+    for route in &figure.routes {
+        // A table that does not fit below the pictures begins a page.
+        if end_mm + mesh_table::height_mm(route.path) > page_mm + PAGE_HEIGHT_MM {
+            page_mm = end_mm.ceil();
+            breaks.push(PageBreak::at(&sheet, page_mm));
+            end_mm = page_mm + 3.0;
+        }
+        end_mm = mesh_table::draw(&mut sheet, route.name, route.path, end_mm) + 1.5;
+    }
+    Ok(Picture { breaks, ..Picture::page(sheet, end_mm + 2.5) })
 }
 
 /// The flight of a hop, in small pieces.
@@ -135,14 +144,11 @@ impl MeshRouteFigure<'_> {
         found.push((Swatch::Symbol(goal), text.to_owned()));
         for (number, route) in self.routes.iter().enumerate() {
             let name = if route.name.is_empty() { "path" } else { route.name };
-            found.push((Swatch::Line(Self::pen(number)), format!("{name}, {} hops", route.path.hops.len())));
+            let hops = route.path.hops.len();
+            found.push((Swatch::Line(Self::pen(number)), format!("{name}, {hops} hop{}", if hops == 1 { "" } else { "s" })));
         }
         if !self.walks.is_empty() {
             found.push((Swatch::Line(WALKED), "walked".to_owned()));
-        }
-        if !self.routes.is_empty() {
-            let pen = hidden(Self::pen(0));
-            found.push((Swatch::Dashed(pen, DASHES_MM.0, DASHES_MM.1), "behind a facet".to_owned()));
         }
         if self.nearest.is_some() {
             found.push((Swatch::Symbol(nearest_symbol), "reached contact nearest to the goal".to_owned()));
@@ -187,7 +193,9 @@ impl MeshRouteFigure<'_> {
             }
         }
         self.symbols(sheet, &oblique, flights);
-        oblique.finish(sheet, "")
+        let points = flights.iter().flatten().flatten().chain(self.walks.iter().flatten());
+        let is_hidden = points.into_iter().any(|point| oblique.seen.hides(oblique.view.of(point)));
+        oblique.finish(sheet, if is_hidden { " Dashed: a path behind a facet." } else { "" })
     }
 
     /// Landings with their numbers, start and goal.

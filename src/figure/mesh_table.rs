@@ -28,6 +28,20 @@ const COLUMNS: [(&str, &str, f64); 12] = [
     ("apex z", "m", RIGHT_MM),
 ];
 
+/// A coordinate; what rounds to zero has no sign.
+fn metres(value_m: f64) -> String {
+    let text = format!("{value_m:.2}");
+    if text == "-0.00" { "0.00".to_owned() } else { text }
+}
+
+/// The height of the table.
+pub(super) fn height_mm(path: &HopPath) -> f64 {
+    let every = path.hops.len().div_ceil(MOST_ROWS).max(1);
+    #[expect(clippy::cast_precision_loss, reason = "at most some thirty rows")]
+    let rows = path.hops.len().div_ceil(every) as f64;
+    1.4 * SMALL_MM + (2.0 + rows) * ROW_MM + 1.1
+}
+
 /// Draws the table below a height of the sheet; returns where it ends.
 pub(super) fn draw(sheet: &mut Sheet, name: &str, path: &HopPath, top_mm: f64) -> f64 {
     let every = path.hops.len().div_ceil(MOST_ROWS).max(1);
@@ -50,9 +64,9 @@ pub(super) fn draw(sheet: &mut Sheet, name: &str, path: &HopPath, top_mm: f64) -
         row(
             [
                 number.to_string(),
-                format!("{:.2}", at.x),
-                format!("{:.2}", at.y),
-                format!("{:.2}", at.z),
+                metres(at.x),
+                metres(at.y),
+                metres(at.z),
                 format!("{:.2}", hop.run_m()),
                 format!("{:.1}", hop.heading_deg),
                 format!("{:.2}", hop.takeoff_angle.degrees()),
@@ -60,7 +74,7 @@ pub(super) fn draw(sheet: &mut Sheet, name: &str, path: &HopPath, top_mm: f64) -
                 format!("{:.3}", hop.takeoff_speed_m_s),
                 format!("{:.3}", hop.landing_speed_m_s),
                 format!("{:.2}", hop.flight_time_s),
-                format!("{:.2}", hop.apex_z_m),
+                metres(hop.apex_z_m),
             ],
             y,
         );

@@ -55,10 +55,23 @@ impl SensitivityFigure {
             answer.policy, answer.trials, answer.seed, answer.success_rate
         );
         let bars = answer.errors.iter().map(|row| SensitivityBar {
-            name: row.setting(),
+            name: error_words(&row.setting()),
             cost: Success { rate: row.cost, low: row.cost_ci95[0], high: row.cost_ci95[1] },
         });
         Self { caption: Caption::new(format!("What each error costs: {title}"), words), bars: bars.collect() }
+    }
+}
+
+/// An error with its size in words, from the key and the value of a scenario: `take-off angle 0.3 deg`.
+fn error_words(setting: &str) -> String {
+    const UNITS: [(&str, &str); 4] = [("_m_s", " m/s"), ("_m", " m"), ("_deg", " deg"), ("_fraction", " of the value")];
+    let (key, value) = setting.split_once(" = ").unwrap_or((setting, ""));
+    let unit = UNITS.iter().find(|(ending, _)| key.ends_with(ending));
+    let name = unit.and_then(|(ending, _)| key.strip_suffix(ending)).unwrap_or(key);
+    let name = name.trim_end_matches("_sigma").replace('_', " ").replace("takeoff", "take-off");
+    match value {
+        "" => name,
+        _ => format!("{name} {value}{}", unit.map_or("", |(_, unit)| unit)),
     }
 }
 
@@ -112,7 +125,21 @@ fn cell(row: &TradeRow) -> TradeCell {
 
 #[cfg(test)]
 mod tests {
-    use super::axis_words;
+    use super::{axis_words, error_words};
+
+    #[test]
+    fn errors_are_named_in_words_with_their_unit() {
+        for (setting, words) in [
+            ("takeoff_speed_sigma_fraction = 0.005", "take-off speed 0.005 of the value"),
+            ("takeoff_speed_sigma_m_s = 0.02", "take-off speed 0.02 m/s"),
+            ("takeoff_angle_sigma_deg = 0.5", "take-off angle 0.5 deg"),
+            ("drift_along_sigma_m = 0.1", "drift along 0.1 m"),
+            ("friction_sigma = 0.02", "friction 0.02"),
+            ("measured", "measured"),
+        ] {
+            assert_eq!(error_words(setting), words);
+        }
+    }
 
     #[test]
     fn axes_are_named_in_words_with_their_unit() {

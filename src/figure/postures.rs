@@ -8,7 +8,7 @@ use super::{
     keys::{self, Swatch},
     palette::{BLUE, LEFT_MM, RIGHT_MM, SMALL_MM, TEXT_MM, WHITE},
     robot_view::{LIMB_PEN, RobotMark, TRUNK, View},
-    sheet::{Anchor, Hang, Label, Place, Sheet},
+    sheet::{Anchor, Hang, Label, Place, Sheet, text_width_mm},
     ticks::Ticks,
 };
 
@@ -60,14 +60,14 @@ pub fn draw_postures(figure: &PosturesFigure) -> Result<Picture, FigureError> {
     let mut top_mm = keys::draw(&mut sheet, &entries(), head_mm + 2.0) + 3.0;
     let marks = figure.rows.iter().flat_map(|row| &row.postures);
     let size_m = marks.map(|posture| posture.robot.size_m()).fold(1e-9, f64::max);
-    for row in &figure.rows {
-        top_mm = draw_row(&mut sheet, row, size_m, top_mm);
+    for (number, row) in (1..).zip(&figure.rows) {
+        top_mm = draw_row(&mut sheet, row, size_m, (top_mm, number == figure.rows.len()));
     }
     Ok(Picture::page(sheet, top_mm + 4.0))
 }
 
-/// Draws a row; where it ends.
-fn draw_row(sheet: &mut Sheet, row: &PostureRow, size_m: f64, top_mm: f64) -> f64 {
+/// Draws a row, the last of them with the name of its axis; where it ends.
+fn draw_row(sheet: &mut Sheet, row: &PostureRow, size_m: f64, (top_mm, is_last): (f64, bool)) -> f64 {
     let label =
         Label { bold: true, ..Label::new(row.title.as_str(), (LEFT_MM, top_mm + 2.0), TEXT_MM).hung(Anchor::Start, Hang::Below) };
     sheet.label(label);
@@ -86,21 +86,28 @@ fn draw_row(sheet: &mut Sheet, row: &PostureRow, size_m: f64, top_mm: f64) -> f6
         sheet.label(Label::new(posture.name.as_str(), at, SMALL_MM).hung(Anchor::Middle, Hang::Above));
         view.ground(sheet, &posture.robot.cut);
         view.robot(sheet, &posture.robot, size_m);
-        numbers(sheet, &view, number == 0);
+        let is_named = is_last && number == row.postures.len() / 2;
+        numbers(sheet, &view, number == 0, if is_named { "ahead of the root (m)" } else { "" });
         panel.outline(sheet);
     }
     top + width_mm + UNDER_MM
 }
 
-/// The numbers of the axes: those up at the first panel of a row alone, since all have one scale.
-fn numbers(sheet: &mut Sheet, view: &View<'_>, is_first: bool) {
+/// The numbers of the axes: those up at the first panel of a row alone, since all have one scale; those along within their panel, clear of its
+/// neighbours.
+fn numbers(sheet: &mut Sheet, view: &View<'_>, is_first: bool, name: &str) {
     let half_m = 0.5 * view.panel.width() / view.mm_per_m;
     let ticks = Ticks::round(-half_m, half_m, 5.0);
-    let along: Vec<_> = ticks.values.iter().map(|value| (view.at([*value, 0.0]).0, ticks.text(*value))).collect();
-    view.panel.x_axis(sheet, &along, "", false);
+    let Panel { left, right, .. } = view.panel;
+    let is_within = |(x, text): &(f64, String)| {
+        let beside_mm = 0.5 * text_width_mm(text, SMALL_MM);
+        x - beside_mm >= left && x + beside_mm <= right
+    };
+    let along: Vec<_> = ticks.values.iter().map(|value| (view.at([*value, 0.0]).0, ticks.text(*value))).filter(is_within).collect();
+    view.panel.x_axis(sheet, &along, name, false);
     if is_first {
         let up: Vec<_> = ticks.values.iter().map(|value| (view.at([0.0, *value]).1, ticks.text(*value))).collect();
-        view.panel.y_axis(sheet, &up, "m from the root", false);
+        view.panel.y_axis(sheet, &up, "over the root (m)", false);
     }
 }
 

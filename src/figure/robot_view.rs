@@ -11,7 +11,7 @@ use super::{
 };
 use crate::quantity::ChainPoint;
 
-const GROUND_PEN: Pen = Pen { colour: SURFACE, width_mm: 0.45 };
+pub(super) const GROUND_PEN: Pen = Pen { colour: SURFACE, width_mm: 0.45 };
 pub(super) const TRUNK_PEN: Pen = Pen { colour: BLACK, width_mm: 0.35 };
 pub(super) const LIMB_PEN: Pen = Pen { colour: BLUE, width_mm: 0.6 };
 pub(super) const NORMAL_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.5 };

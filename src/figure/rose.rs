@@ -141,8 +141,12 @@ impl<'a> Rose<'a> {
     fn legend(&self, sheet: &mut Sheet, top_mm: f64) -> f64 {
         let bands = self.classes.texts().into_iter().enumerate();
         let mut entries: Vec<_> = bands.map(|(class, text)| (Swatch::Fill(self.classes.colour(class)), text)).collect();
-        entries.push((Swatch::Fill(BLOCKED), "not reached".to_owned()));
-        entries.push((Swatch::Line(Pen { colour: BLACK, width_mm: 0.35 }), "farthest reached".to_owned()));
+        if self.answer.rays.iter().flat_map(|ray| &ray.bands).any(|band| band.hops.is_none()) {
+            entries.push((Swatch::Fill(BLOCKED), "not reached".to_owned()));
+        }
+        if self.answer.rays.iter().any(|ray| ray.farthest_m > 0.0) {
+            entries.push((Swatch::Line(Pen { colour: BLACK, width_mm: 0.35 }), "farthest reached".to_owned()));
+        }
         if let Some(north_deg) = self.answer.true_north_deg {
             entries.push((Swatch::Line(TRUE_NORTH_PEN), format!("true north, {north_deg:.1} deg clockwise from grid north")));
         }

@@ -127,16 +127,30 @@ pub(super) fn text_width_mm(text: &str, size_mm: f64) -> f64 {
     ems.sum::<f64>() * size_mm
 }
 
-/// A text wrapped between words into lines of at most a given width.
+/// Units, which stay on the line of their number.
+const UNITS: [&str; 9] = ["m", "s", "deg", "%", "m/s", "m/s²", "kg", "J/kg", "m/m"];
+
+/// A text wrapped between words into lines of at most a given width; a number and its unit are one word.
 pub(super) fn wrapped(text: &str, size_mm: f64, width_mm: f64) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
+    let mut words: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
+        let is_unit = UNITS.contains(&word.trim_end_matches([',', ';', '.', ':', ')']));
+        match words.last_mut() {
+            Some(number) if is_unit && number.ends_with(|last: char| last.is_ascii_digit()) => {
+                number.push(' ');
+                number.push_str(word);
+            }
+            _ => words.push(word.to_owned()),
+        }
+    }
+    let mut lines: Vec<String> = Vec::new();
+    for word in &words {
         match lines.last_mut() {
             Some(line) if text_width_mm(line, size_mm) + text_width_mm(word, size_mm) + size_mm <= width_mm => {
                 line.push(' ');
                 line.push_str(word);
             }
-            _ => lines.push(word.to_owned()),
+            _ => lines.push(word.clone()),
         }
     }
     lines
@@ -425,5 +439,17 @@ mod tests {
         let lines = wrapped("one two three four", 2.0, 12.0);
         assert_eq!(lines.join(" "), "one two three four");
         assert!(lines.len() > 1 && lines.iter().all(|l| text_width_mm(l, 2.0) <= 12.0), "{lines:?}");
+    }
+
+    #[test]
+    fn a_number_and_its_unit_stay_on_one_line() {
+        let text = "take-off speed 6 m/s, drift 0.05 m; goal tolerance 3 m; 95 % of 20 hops";
+        for width_mm in 10..60 {
+            let lines = wrapped(text, 2.0, f64::from(width_mm));
+            assert_eq!(lines.join(" "), text);
+            for unit in ["m/s,", "m;", "%"] {
+                assert!(lines.iter().all(|line| !line.starts_with(unit)), "{lines:?}");
+            }
+        }
     }
 }

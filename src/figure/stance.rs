@@ -8,7 +8,7 @@ use super::{
     axes::{BELOW_MM, Panel},
     keys::{self, Swatch},
     palette::{AXIS, BLACK, LEFT_MM, PURPLE, RIGHT_MM, SKY, SMALL_MM, TEXT_MM, WHITE},
-    robot_view::{LIMB_PEN, NORMAL_PEN, RobotMark, TRUNK, TRUNK_PEN, View},
+    robot_view::{GROUND_PEN, LIMB_PEN, NORMAL_PEN, RobotMark, TRUNK, TRUNK_PEN, View},
     sheet::{Anchor, Hang, Label, Pen, Place, Sheet, text_width_mm},
 };
 use crate::{
@@ -233,17 +233,24 @@ fn entries(figure: &StanceFigure<'_>) -> Vec<(Swatch, String)> {
         found.push((Swatch::Fill(TRUNK), "trunk".to_owned()));
         found.push((Swatch::Line(LIMB_PEN), "limb".to_owned()));
         found.push((Swatch::Line(NORMAL_PEN), "normal of the ground at a foot".to_owned()));
+        found.push((Swatch::Line(GROUND_PEN), "ground below the root, cut along the view from the side".to_owned()));
         found.push((Swatch::Line(TRUNK_PEN), "forward".to_owned()));
         found.push((Swatch::Dashed(KC_PLUS_PEN, KC_DASH_MM.0, KC_DASH_MM.1), "heading of the view from the side".to_owned()));
     }
     if figure.rose.iter().any(|row| row.k.is_some()) {
-        found.push((Swatch::Fill(CONE), "take-offs without slipping, exact cone K".to_owned()));
+        found.push((Swatch::Fill(CONE), "take-offs without slipping, by the exact cone K".to_owned()));
     }
     if figure.rose.iter().any(|row| row.kc_plus.is_some()) {
-        found.push((Swatch::Dashed(KC_PLUS_PEN, KC_PLUS_DASH_MM.0, KC_PLUS_DASH_MM.1), "limits by Kc+".to_owned()));
+        found.push((
+            Swatch::Dashed(KC_PLUS_PEN, KC_PLUS_DASH_MM.0, KC_PLUS_DASH_MM.1),
+            "their limits by the widest round cone inside it, Kc+".to_owned(),
+        ));
     }
     if figure.rose.iter().any(|row| row.kc.is_some()) {
-        found.push((Swatch::Dashed(KC_PEN, KC_DASH_MM.0, KC_DASH_MM.1), "limits by Kc".to_owned()));
+        found.push((
+            Swatch::Dashed(KC_PEN, KC_DASH_MM.0, KC_DASH_MM.1),
+            "their limits by the round cone of least friction, Kc".to_owned(),
+        ));
     }
     found
 }

@@ -61,9 +61,10 @@ const ON_MISSING_DATA: [&str; 1] = ["--no-data"];
 /// An option, a command line without it, and one with it.
 type Trial = (&'static str, &'static [&'static str], &'static [&'static str]);
 
-const RUN: [Trial; 8] = [
+const RUN: [Trial; 9] = [
     ("--width-mm", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--width-mm", "85"]),
     ("--report", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--report", "out/page.html"]),
+    ("--pictures", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--pictures", "png"]),
     ("--trajectory", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--trajectory", "t.csv"]),
     (
         "--step-s",
@@ -277,7 +278,7 @@ const SITES: [Trial; 19] = [
     ),
 ];
 
-const MAP: [Trial; 32] = [
+const MAP: [Trial; 33] = [
     (
         "--width-mm",
         &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--plot", "map.svg"],
@@ -393,6 +394,24 @@ const MAP: [Trial; 32] = [
         "--profiles",
         &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
         &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9", "--profiles", "p.svg"],
+    ),
+    (
+        "--profiles-from",
+        &["map", "ground.tif", "--start", "1,1", "--scenario", "map.toml", "--goal", "18,18", "--profiles", "p.svg"],
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "1,1",
+            "--scenario",
+            "map.toml",
+            "--goal",
+            "18,18",
+            "--profiles",
+            "p.svg",
+            "--profiles-from",
+            "2",
+        ],
     ),
     (
         "--plot",

@@ -108,6 +108,54 @@ fn a_picture_has_the_width_asked_for() {
     assert_eq!(desk.run(&["bodies", "--width-mm", "85"]).status, 2);
 }
 
+/// The pictures of a run are what they are asked to be; those of an earlier run in the other format do not stay.
+#[test]
+fn the_pictures_of_a_run_have_one_format() {
+    let desk = desk();
+    let errors = ["--set", "uncertainty.trials=20", "--set", "uncertainty.takeoff_speed_sigma_fraction=0.01"];
+    let run = |format: &str| desk.run(&[&["run", "map.toml", "-o", "out", "--pictures", format][..], &errors].concat());
+    let all = || -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(desk.path().join("out"))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .filter(|name| name.ends_with(".svg") || name.ends_with(".png"))
+            .collect();
+        names.sort();
+        names
+    };
+    let stems = ["landings", "path", "trials-2", "trials-3", "trials"];
+    for (format, beginning) in [("svg", &b"<svg"[..]), ("png", b"\x89PNG\r\n\x1a\n"), ("svg", b"<svg")] {
+        let ran = run(format);
+        assert!(ran.status < 2, "{}", ran.stderr);
+        let names = stems.map(|stem| format!("{stem}.{format}"));
+        assert_eq!(all(), names);
+        for name in &names {
+            assert!(ran.stdout.contains(name), "{name}: {}", ran.stdout);
+            assert!(fs::read(desk.path().join("out").join(name)).unwrap().starts_with(beginning), "{name}");
+        }
+    }
+    assert_eq!(desk.run(&["run", "map.toml", "-o", "out", "--pictures", "jpg"]).status, 2);
+}
+
+/// Eight hops of each path from a chosen one on, in place of all.
+#[test]
+fn profiles_begin_at_a_chosen_hop() {
+    let desk = desk();
+    let map = ["map", "ground.tif", "--start", "1,1", "--goal", "18,18", "--scenario", "map.toml", "--profiles", "p.svg"];
+    desk.run(&map);
+    let whole = desk.read("p.svg");
+    let hops = whole.matches("goal 1, hop ").count();
+    assert!(whole.contains("goal 1, hop 1 of") && hops >= 2, "{hops} hops");
+    desk.run(&[&map[..], &["--profiles-from", "2"]].concat());
+    let chosen = desk.read("p.svg");
+    assert!(!chosen.contains("goal 1, hop 1 of") && chosen.contains(&format!("goal 1, hop 2 of {hops}")), "{chosen}");
+    assert_eq!(chosen.matches("goal 1, hop ").count(), (hops - 1).min(8));
+    let late = (hops + 1).to_string();
+    let expected = format!("expected a hop of a path, 1 to {hops}");
+    desk.refused(&[&map[..], &["--profiles-from", &late]].concat(), &["--profiles-from: found", &expected]);
+    assert_eq!(desk.run(&[&map[..], &["--profiles-from", "0"]].concat()).status, 2);
+}
+
 /// A picture of several pages is a file for each page, and the answer names them.
 #[test]
 fn every_page_has_a_file_that_the_answer_names() {

@@ -66,6 +66,10 @@ fn a_path_behind_a_block_is_dashed_and_its_hops_are_listed() {
     figure.seen_from.azimuth_deg = 0.0;
     let free = draw_mesh_route(&figure).unwrap().to_svg().unwrap();
     assert!(lines(&hidden) > lines(&free) + 3, "{} {}", lines(&hidden), lines(&free));
+    assert!(!free.contains("behind a facet"), "what is not drawn has no words");
+    let single = HopPath::of_hops(path.hops[..1].to_vec(), ground.envelope().hopper());
+    figure.routes = vec![MeshRouteLine { path: &single, ..line("") }];
+    assert!(draw_mesh_route(&figure).unwrap().to_svg().unwrap().contains("path, 1 hop<"));
     // Two paths have their names; without one the goal is not reached.
     figure.routes = vec![line("strong"), line("weak")];
     let both = draw_mesh_route(&figure).unwrap().to_svg().unwrap();

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use chta::{
+    figure::PictureFormat,
     graph::proof::DEFAULT_BUDGET_CELLS,
     study::{Case, Front, SimulateOptions},
     uncertainty::experiments::{DriftReading, Experiment},
 };
-use clap::Args as ClapArgs;
+use clap::{Args as ClapArgs, ValueEnum};
 
 use super::{
     super::{Failure, density, load::OwnKey},
@@ -27,6 +28,24 @@ pub(crate) struct TrajectoryArgs {
     pub(crate) step_s: Option<f64>,
 }
 
+/// The format of the pictures of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PicturesArg {
+    /// Vector graphics.
+    Svg,
+    /// Raster graphics, 300 dots an inch.
+    Png,
+}
+
+impl From<PicturesArg> for PictureFormat {
+    fn from(format: PicturesArg) -> Self {
+        match format {
+            PicturesArg::Svg => Self::Svg,
+            PicturesArg::Png => Self::Png,
+        }
+    }
+}
+
 /// Do everything a scenario asks for: chain.csv, path.csv, path.geojson (on a map), result.json and path.svg
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta run data/scenarios/mars_crater_field.toml -o out")]
@@ -40,6 +59,9 @@ pub(crate) struct RunArgs {
     /// Page (HTML) to write of the answer, as `chta report` makes it: one file with figures, tables and the documents
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
+    /// Format of the pictures in the folder, whose names end in it
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = PicturesArg::Svg)]
+    pub(crate) pictures: PicturesArg,
     #[command(flatten)]
     pub(crate) trajectory: TrajectoryArgs,
     #[command(flatten)]

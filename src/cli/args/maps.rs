@@ -283,6 +283,9 @@ pub(crate) struct MapArgs {
     /// Profile of every hop to every goal (SVG or PNG) to write, eight to a page of A4; page 2 of FILE.svg is FILE-2.svg
     #[arg(long, value_name = "FILE")]
     pub(crate) profiles: Option<PathBuf>,
+    /// Of every path only eight hops in the picture of profiles, from this one on [default: all hops]
+    #[arg(long, value_name = "HOP", value_parser = clap::value_parser!(u32).range(1..), requires = "profiles")]
+    pub(crate) profiles_from: Option<u32>,
     /// Map picture (SVG or PNG) to write
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,

@@ -121,7 +121,12 @@ fn picture(input: &MapInput, prepared: &PreparedLegsMap, found: &LegsMap, file: 
             none_name: "not reached over these stances".to_owned(),
             counts: true,
         });
-        lines.push(format!("reached: {} nodes over {} stances; other stances may reach more", reach.reached_nodes, reach.stances));
+        lines.push(format!(
+            "reached: {} node{} over {} stances; other stances may reach more",
+            reach.reached_nodes,
+            if reach.reached_nodes == 1 { "" } else { "s" },
+            reach.stances
+        ));
     }
     let figure = LegsMapFigure {
         caption: Caption { title: format!("Stances of a robot with legs: {}", input.title()), lines },

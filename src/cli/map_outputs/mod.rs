@@ -59,7 +59,7 @@ impl<'a> MapOutputs<'a> {
             files.extend(output::prj(projection.ok()).map(|text| (file.with_extension("prj"), text)));
         }
         if let Some(file) = &args.profiles {
-            files.extend(profiles::pages(input, &study.goal_hops, projection.ok(), file)?);
+            files.extend(profiles::pages(input, &study.goal_hops, projection.ok(), (file, args.profiles_from))?);
         }
         if let Some(file) = &args.plot {
             files.push((file.clone(), pictures::map(input, prepared, study, file)?));

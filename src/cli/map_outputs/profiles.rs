@@ -13,18 +13,27 @@ use chta::{
 
 use crate::cli::{Failure, map_input::MapInput, pictures};
 
-/// The pages of all hops to all goals, in the format of the file's extension.
+/// The hops of each path where a first one is chosen: those of a page.
+const CHOSEN: usize = 8;
+
+/// The pages of the hops to all goals, in the format of the file's extension; all hops, or eight of every path from the given one on.
 pub(super) fn pages(
     input: &MapInput,
     goal_hops: &[Option<Vec<MapHop>>],
     projection: Option<&MapProjection>,
-    file: &Path,
+    (file, from): (&Path, Option<u32>),
 ) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
     let (name, scenario) = (input.title(), &input.bare.scenario);
+    let (skipped, most) = from.map_or((0, usize::MAX), |from| (from as usize - 1, CHOSEN));
+    let longest = goal_hops.iter().flatten().map(Vec::len).max().unwrap_or(0);
+    if longest > 0 && skipped >= longest {
+        let found = skipped + 1;
+        return Err(Failure::message(format!("--profiles-from: found {found}, expected a hop of a path, 1 to {longest}")));
+    }
     let mut profiles = Vec::new();
     for (goal, hops) in goal_hops.iter().enumerate() {
         let hops = hops.as_deref().unwrap_or_default();
-        for (number, hop) in hops.iter().enumerate() {
+        for (number, hop) in hops.iter().enumerate().skip(skipped).take(most) {
             let name = format!("goal {}, hop {} of {}", goal + 1, number + 1, hops.len());
             profiles.extend(profile(hop, name, projection));
         }

@@ -210,8 +210,10 @@ const MOST_NAMED: usize = 8;
 fn legend(sheet: &mut Sheet, drawn: &[Drawn<'_>], top_mm: f64) -> f64 {
     let mut y = top_mm;
     for one in drawn {
-        one.line(sheet, vec![(LEFT_MM, y), (LEFT_MM + SAMPLE_MM, y)], 0.5);
-        one.mark(sheet, (LEFT_MM + 0.5 * SAMPLE_MM, y));
+        if !one.flights.is_empty() {
+            one.line(sheet, vec![(LEFT_MM, y), (LEFT_MM + SAMPLE_MM, y)], 0.5);
+            one.mark(sheet, (LEFT_MM + 0.5 * SAMPLE_MM, y));
+        }
         let number = format!("{}. ", one.index + 1);
         sheet.label(Label::new(
             fitted(&(number + &one.text()), SMALL_MM, RIGHT_MM - TEXT_LEFT_MM + 4.0),

@@ -204,7 +204,7 @@ fn panel(sheet: &mut Sheet, profile: &HopProfile, clearance: ClearanceProfile, e
 
 /// The scale, worded briefly for a small panel.
 fn brief(scale: &Scale) -> String {
-    if scale.exaggeration < 1.0 { format!("heights at 1/{:.0}", 1.0 / scale.exaggeration) } else { scale.text() }
+    if scale.exaggeration < 1.0 { format!("heights at 1/{:.0} of its scale", 1.0 / scale.exaggeration) } else { scale.text() }
 }
 
 /// A panel of fixed height, with equal scales on both axes or an exaggeration that its axis states.

@@ -137,9 +137,14 @@ fn cross(sheet: &mut Sheet, (x, y): Place, r: f64) {
     sheet.line(vec![(x - r, y + r), (x + r, y - r)], pen);
 }
 
-/// Black or white, whichever has more contrast on a colour.
+/// Black or white, whichever has more contrast on a colour: by the relative luminance of WCAG 2.
 fn ink(RGBColor(r, g, b): RGBColor) -> RGBColor {
-    if 0.3 * f64::from(r) + 0.59 * f64::from(g) + 0.11 * f64::from(b) > 125.0 { BLACK } else { WHITE }
+    let linear = |part: u8| {
+        let share = f64::from(part) / 255.0;
+        if share <= 0.04045 { share / 12.92 } else { libm::pow((share + 0.055) / 1.055, 2.4) }
+    };
+    let luminance = 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
+    if (luminance + 0.05) * (luminance + 0.05) > 0.05 * 1.05 { BLACK } else { WHITE }
 }
 
 /// The labels of an axis: four digits, or all digits if four do not distinguish neighbours.
@@ -263,4 +268,23 @@ fn sign(cell: TradeCell) -> String {
 /// Whether a name fits along a vertical axis.
 fn fits(name: &str, height_mm: f64) -> bool {
     text_width_mm(name, TEXT_MM) <= height_mm + 4.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_number_of_a_cell_has_a_contrast_of_at_least_four_and_a_half_to_its_colour() {
+        let luminance = |RGBColor(r, g, b): RGBColor| {
+            let linear = [r, g, b].map(|part| (f64::from(part) / 255.0).powf(2.2));
+            0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+        };
+        for step in 0..=100 {
+            let colour = ramp(0.01 * f64::from(step));
+            let (under, over) = (luminance(colour), luminance(ink(colour)));
+            let ratio = (under.max(over) + 0.05) / (under.min(over) + 0.05);
+            assert!(ratio >= 4.4, "{colour:?} under {:?}: {ratio:.2}", ink(colour));
+        }
+    }
 }

@@ -15,7 +15,8 @@ use super::{
     check_size,
     data::MapPosts,
     hops::{no_data_symbol, notes},
-    panel::{MapPanel, path_symbol, start_symbol},
+    names::Bounds,
+    panel::{MapPanel, start_symbol},
     raster::{self, Pattern, tone},
 };
 use crate::{quantity::MapPoint, terrain::Dem};
@@ -28,6 +29,8 @@ const LIGHTEST: f64 = 0.2;
 const AREA_PEN: Pen = Pen { colour: BLACK, width_mm: 0.4 };
 const CASING_PEN: Pen = Pen { colour: WHITE, width_mm: 1.0 };
 const DASH_MM: [f64; 2] = [2.4, 1.2];
+/// Half the size of the goal's outline.
+const OPEN_MM: f64 = 2.0;
 
 /// The picture of where trials come to rest.
 #[derive(Clone, Debug)]
@@ -78,9 +81,17 @@ pub fn draw_density(figure: &DensityFigure<'_>) -> Result<Picture, FigureError> 
     }
     let path: Vec<MapPoint> = figure.path.iter().copied().filter(|at| map.shows(*at)).collect();
     let plan = if path.len() > 1 { vec![path.clone()] } else { Vec::new() };
-    map.paths(&mut sheet, &plan);
+    for places in &plan {
+        thin_path(&mut sheet, &places.iter().map(|at| map.place(*at)).collect::<Vec<_>>());
+    }
     let starts: Vec<MapPoint> = path.first().copied().into_iter().collect();
-    map.ends(&mut sheet, &starts, &[], &plan);
+    let goal = figure.path.last().copied().filter(|at| figure.path.len() > 1 && map.shows(*at));
+    let mut taken = map.ends(&mut sheet, &starts, &[], &plan);
+    if let Some(at) = goal {
+        open_goal_symbol(&mut sheet, map.place(at));
+        taken.kept.push(Bounds::around(map.place(at), OPEN_MM));
+        map.name(&mut sheet, at, "goal", &mut taken);
+    }
     let end_mm = paragraph(&mut sheet, &format!("Colours: {}", figure.value_name), TEXT_MM, false, end_mm + 0.5);
     let mut entries = bands.keys(&tones, figure.shares);
     entries.push((Swatch::Fill(GROUND), "no trial".to_owned()));
@@ -88,7 +99,10 @@ pub fn draw_density(figure: &DensityFigure<'_>) -> Result<Picture, FigureError> 
         entries.push((Swatch::Symbol(start_symbol), "start".to_owned()));
     }
     if !plan.is_empty() {
-        entries.push((Swatch::Symbol(path_symbol), "planned path".to_owned()));
+        entries.push((Swatch::Symbol(thin_path_symbol), "planned path".to_owned()));
+    }
+    if goal.is_some() {
+        entries.push((Swatch::Symbol(open_goal_symbol), "goal".to_owned()));
     }
     if !figure.area.is_empty() {
         entries.push((Swatch::Symbol(area_symbol), "the area".to_owned()));
@@ -99,6 +113,26 @@ pub fn draw_density(figure: &DensityFigure<'_>) -> Result<Picture, FigureError> 
     let end_mm = keys::draw(&mut sheet, &entries, end_mm + 2.5);
     let height_mm = notes(&mut sheet, &posts, &window, end_mm + 0.8) + 2.0;
     Ok(Picture::page(sheet, height_mm))
+}
+
+/// The planned path, thin and without a casing: it would hide the cells beside it, where trials come to rest.
+fn thin_path(sheet: &mut Sheet, places: &[Place]) {
+    sheet.line(places.to_vec(), Pen { colour: BLACK, width_mm: 0.15 });
+    for &at in places {
+        sheet.dot(at, 0.4, BLACK);
+    }
+}
+
+fn thin_path_symbol(sheet: &mut Sheet, (x, y): Place) {
+    thin_path(sheet, &[(x - 2.4, y), (x + 2.4, y)]);
+}
+
+/// The goal as an outline, which leaves the cells within it to be seen.
+fn open_goal_symbol(sheet: &mut Sheet, (x, y): Place) {
+    let corners = [(x - OPEN_MM, y), (x, y - OPEN_MM), (x + OPEN_MM, y), (x, y + OPEN_MM), (x - OPEN_MM, y)];
+    for pen in [CASING_PEN, AREA_PEN] {
+        sheet.line(corners.to_vec(), pen);
+    }
 }
 
 /// The outline of the area in a legend.
@@ -169,7 +203,7 @@ impl Bands {
         (0..self.ends.len()).map(|band| tone(ramp(LIGHTEST + (1.0 - LIGHTEST) * band as f64 / last as f64))).collect()
     }
 
-    /// The legend, with the number of cells in each band.
+    /// The legend, with the number of cells in each band that has any.
     fn keys(&self, tones: &[RGBColor], shares: &[f64]) -> Vec<(Swatch, String)> {
         let mut counts = vec![0_usize; self.ends.len()];
         for band in shares.iter().filter_map(|share| self.class(*share)) {
@@ -184,7 +218,7 @@ impl Bands {
             };
             (Swatch::Fill(*tone), format!("{range}: {count} cell{}", if count == 1 { "" } else { "s" }))
         };
-        counts.into_iter().zip(tones).enumerate().map(entry).collect()
+        counts.into_iter().zip(tones).enumerate().filter(|(_, (count, _))| *count > 0).map(entry).collect()
     }
 }
 
@@ -296,7 +330,8 @@ mod tests {
             })
             .sum();
         assert_eq!(counted, counts.iter().filter(|count| **count > 0).count(), "{lettering}");
-        for words in ["the area", "planned path", "start", "no trial", "up to 0.03 %", "inside the area: 0.31"] {
+        assert!(!lettering.contains(": 0 cells"), "a band without a cell: {lettering}");
+        for words in ["the area", "planned path", "start", "goal", "no trial", "up to 0.03 %", "inside the area: 0.31"] {
             assert!(lettering.contains(words), "{words:?} is missing in {lettering}");
         }
         let none = DensityFigure { shares: &[0.0; 600], path: Vec::new(), area: Vec::new(), ..figure.clone() };

@@ -91,6 +91,10 @@ impl Frame {
         let corners = rectangle((left, top), (left + SIZE_MM.0, top + SIZE_MM.1));
         sheet.area(corners.clone(), GROUND, 0.5);
         sheet.line(corners.into_iter().chain([(left, top)]).collect(), OUTLINE_PEN);
+        // The goal's symbol is larger than many a scatter, whose landings lie over it.
+        if is_last {
+            goal_symbol(sheet, self.place(cloud.planned));
+        }
         let every = cloud.landings.len().div_ceil(MOST_DOTS).max(1);
         for &at in cloud.landings.iter().step_by(every) {
             landing_dot(sheet, self.place(at));
@@ -100,8 +104,9 @@ impl Frame {
             sheet.line(rim.iter().chain(rim.first()).map(|&at| self.place(at)).collect(), ELLIPSE_PEN);
             plus(sheet, self.place(ellipse.centre));
         }
-        let symbol = if is_last { goal_symbol } else { planned_symbol };
-        symbol(sheet, self.place(cloud.planned));
+        if !is_last {
+            planned_symbol(sheet, self.place(cloud.planned));
+        }
         scale_bar(sheet, (left + 2.0, top + SIZE_MM.1 - 2.2), self.mm_per_m, 18.0);
     }
 }

@@ -30,6 +30,8 @@ const CORNERS: u8 = 72;
 const MOST_LISTED: usize = 12;
 pub(super) const ELLIPSE_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.45 };
 const CASING_PEN: Pen = Pen { colour: WHITE, width_mm: 0.95 };
+/// The greatest height of the map, which shares a page of A4 with its insets.
+const TALL_MM: f64 = 134.0;
 
 /// Draws the scattered landings of a path's hops and their 95 % ellipses around the planned path, over a hillshade.
 ///
@@ -46,7 +48,7 @@ pub fn draw_landing_map(figure: &LandingMapFigure<'_>) -> Result<Picture, Figure
     let has_gaps = window.has_gaps(figure.dem);
     let mut sheet = Sheet::default();
     let top_mm = figure.caption.draw(&mut sheet);
-    let map = MapPanel::new(figure.dem, &window, top_mm);
+    let map = MapPanel::at_most(figure.dem, &window, top_mm, TALL_MM);
     let end_mm = map.draw(&mut sheet, pixels);
     // The path lies under the landings, which it would hide.
     let path: Vec<MapPoint> = figure.path.iter().copied().filter(|&at| map.shows(at)).collect();

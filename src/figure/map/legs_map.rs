@@ -19,7 +19,7 @@ use super::{
 use crate::quantity::MapPoint;
 
 /// The height that all maps share on a page of A4.
-const TALL_MM: f64 = 180.0;
+const TALL_MM: f64 = 138.0;
 
 /// One map.
 #[derive(Clone, Debug)]

@@ -2,11 +2,9 @@
 
 use super::super::{
     palette::SMALL_MM,
-    sheet::{Anchor, Hang, Label, Place, text_width_mm},
+    sheet::{Anchor, Hang, Label, Place},
 };
 
-/// Extra width of bold letters, as a fraction of the estimated width.
-const BOLD: f64 = 0.1;
 /// Margin of the light background around the letters.
 const BESIDE_MM: f64 = 0.5;
 const ABOVE_MM: f64 = 0.3;
@@ -32,10 +30,10 @@ impl Bounds {
     }
 
     /// The background rectangle of a bold label, extended on the side away from the text's anchor, since bold letters are wider
-    /// than the estimate.
+    /// than those of [`Label::bounds_mm`].
     pub(super) fn of(label: &Label) -> Self {
         let (left, top, right, bottom) = label.bounds_mm();
-        let wider_mm = BOLD * (right - left);
+        let wider_mm = if label.turned { 0.0 } else { bold_mm(&label.text, label.size_mm) - (right - left) };
         let (before_mm, after_mm) = match label.anchor {
             Anchor::Start => (0.0, wider_mm),
             Anchor::Middle => (0.5 * wider_mm, 0.5 * wider_mm),
@@ -136,7 +134,19 @@ pub(super) fn choose<'a>(candidates: &'a [Candidate], panel: &Bounds, taken: &Ta
 
 /// The greatest width of a bold label, mm.
 pub(super) fn width_mm(text: &str) -> f64 {
-    (1.0 + BOLD) * text_width_mm(text, SMALL_MM) + 2.0 * BESIDE_MM
+    bold_mm(text, SMALL_MM) + 2.0 * BESIDE_MM
+}
+
+/// The width of a bold text in `DejaVu Sans Bold`, estimated by kinds of letters, mm.
+fn bold_mm(text: &str, size_mm: f64) -> f64 {
+    let ems = text.chars().map(|letter| match letter {
+        'i' | 'j' | 'l' | '.' | ',' | ';' | ':' | ' ' | '-' | '\'' | '(' | ')' => 0.38,
+        'f' | 'r' | 't' => 0.49,
+        'm' | 'w' | 'M' | 'W' | '≤' | '≥' | '=' => 1.0,
+        'A'..='Z' => 0.76,
+        _ => 0.69,
+    });
+    ems.sum::<f64>() * size_mm
 }
 
 #[cfg(test)]
@@ -204,6 +214,18 @@ mod tests {
         // With landings everywhere the label is still placed.
         let everywhere: Vec<Place> = (0..4000).map(|i| (70.0 + f64::from(i % 60), 80.0 + f64::from(i / 60))).collect();
         assert!(named(&[("goal: 7 hops", (90.0, 100.0))], &everywhere, &PANEL)[0].is_some());
+    }
+
+    #[test]
+    fn a_bold_text_is_as_wide_as_in_its_font() {
+        let face = ttf_parser::Face::parse(include_bytes!("../../../data/fonts/DejaVuSans-Bold-subset.ttf"), 0).unwrap();
+        for text in ["start", "goal", "start 2", "goal: 26 hops", "goal 12: not reached", "target 3: visit 4", "2: 1.0 hops", "14"]
+        {
+            let units: u32 =
+                text.chars().map(|letter| u32::from(face.glyph_hor_advance(face.glyph_index(letter).unwrap()).unwrap())).sum();
+            let ratio = bold_mm(text, 1.0) * f64::from(face.units_per_em()) / f64::from(units);
+            assert!((0.97..=1.08).contains(&ratio), "{text}: {ratio}");
+        }
     }
 
     #[test]

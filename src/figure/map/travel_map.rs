@@ -21,7 +21,7 @@ use super::{
 use crate::quantity::MapPoint;
 
 /// The greatest height of each of the two maps, which share a page of A4.
-const TALL_MM: f64 = 96.0;
+const TALL_MM: f64 = 78.0;
 
 /// The classes of reach: colours that differ in lightness too, and patterns, so that they differ in print.
 const CLASSES: [(RGBColor, Pattern, &str); 4] = [
@@ -101,6 +101,7 @@ impl TravelMapFigure<'_> {
         let mut tones: Vec<RGBColor> = CLASSES.iter().map(|(colour, ..)| tone(*colour)).collect();
         tones.push(NOT_REACHED);
         let none = CLASSES.len();
+        let top_mm = paragraph(sheet, "By which means", TEXT_MM, true, top_mm + 0.5);
         let end_mm = self.map(sheet, top_mm, &tones, |at| match self.classes[at] {
             Some(class) => (class, CLASSES[class].1),
             None => (none, NO_HOP),
@@ -127,6 +128,7 @@ impl TravelMapFigure<'_> {
         let mut tones = steps.tones();
         tones.push(NOT_REACHED);
         let none = tones.len() - 1;
+        let top_mm = paragraph(sheet, "What the missions take", TEXT_MM, true, top_mm + 0.5);
         let end_mm = self
             .map(sheet, top_mm, &tones, |at| steps.class(self.values[at]).map_or((none, NO_HOP), |class| (class, Pattern::Plain)));
         let end_mm = paragraph(sheet, &steps.described(&self.value_name), TEXT_MM, false, end_mm + 0.5);

@@ -31,6 +31,8 @@ pub(super) fn draw(sheet: &mut Sheet, bars: &[OutcomeBars], top_mm: f64) -> (f64
     let plot = Plot::new(rates(series.iter().flatten()), top_mm, HIGH_MM);
     let along = Trials::new(series.iter().flatten(), plot.panel.left + BESIDE_MM, plot.panel.right - BESIDE_MM);
     plot.axes(sheet, (&along.ticks(), along.name()), "success rate (%)", true);
+    // Every rate lies over every band.
+    let mut lines = Vec::new();
     for (s, points) in series.iter().enumerate() {
         let style = Style::of(s);
         let at = |rate: fn(&ConvergencePoint) -> f64| -> Vec<Place> {
@@ -48,6 +50,9 @@ pub(super) fn draw(sheet: &mut Sheet, bars: &[OutcomeBars], top_mm: f64) -> (f64
         for end in [low, high] {
             style.line(sheet, end, Pen { colour: style.colour, width_mm: BAND_MM });
         }
+        lines.push((style, rate));
+    }
+    for (style, rate) in lines {
         style.line(sheet, rate, Pen { colour: BLACK, width_mm: RATE_MM });
     }
     if series.iter().all(Vec::is_empty) {

@@ -102,7 +102,7 @@ pub struct ConvergencePoint {
 pub struct SimulationFigure {
     /// The caption.
     pub caption: Caption,
-    /// Trajectories over the profile.
+    /// Trajectories over the profile, under the first of the policies.
     pub flown: Option<FlownFigure>,
     /// Distance errors by landing, one series for each policy.
     pub errors: Vec<LandingBoxes>,

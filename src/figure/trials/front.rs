@@ -92,8 +92,14 @@ pub(super) fn draw(sheet: &mut Sheet, figure: &FrontFigure, top_mm: f64) -> (f64
             FrontAgainst::Success { .. } => (1.2, Hang::Below),
             FrontAgainst::Total { .. } => (-0.4, Hang::Above),
         };
-        let label = Label::new(text, (x + side_mm, y + along_mm), SMALL_MM).hung(anchor, hang);
-        if !sheet.is_taken(&label) {
+        // On the other side of the line where another number is there, as beside the last path.
+        let other = match hang {
+            Hang::Below => (-1.2, Hang::Above),
+            Hang::Through | Hang::Above => (1.2, Hang::Below),
+        };
+        let places = [(along_mm, hang), other];
+        let label = |(along_mm, hang)| Label::new(text.as_str(), (x + side_mm, y + along_mm), SMALL_MM).hung(anchor, hang);
+        if let Some(label) = places.into_iter().map(label).find(|label| !sheet.is_taken(label)) {
             sheet.label(label);
         }
     }

@@ -45,7 +45,11 @@ pub fn draw_simulation(figure: &SimulationFigure) -> Result<Picture, FigureError
     let mut pages = Pages::new(&figure.caption);
     if let Some(flown) = &figure.flown {
         pages.begin();
-        pages.panel("Trajectories and landings", |sheet, top| flown::draw(sheet, flown, top))?;
+        let heading = match &figure.outcomes[..] {
+            [first, _, ..] => format!("Trajectories and landings, {}", first.policy),
+            _ => "Trajectories and landings".to_owned(),
+        };
+        pages.panel(&heading, |sheet, top| flown::draw(sheet, flown, top))?;
     }
     if figure.errors.iter().flat_map(|boxes| &boxes.landings).any(boxes::is_drawable) {
         pages.begin();

@@ -70,7 +70,7 @@ const SUCCESS: &str = "success rate, 95 % interval";
 
 /// An outcome's name as words.
 fn words(name: &str) -> String {
-    name.replace('_', " ")
+    name.replace('_', " ").replace("takeoff", "take-off")
 }
 
 /// The names of outcomes in order of first appearance, those that occurred and the others.

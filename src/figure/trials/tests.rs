@@ -132,6 +132,9 @@ fn a_simulation_is_a_page_for_each_figure() {
         let pages = picture.pages();
         let headings = ["Trajectories and landings", "Distance error, landing by landing", "How the trials ended"];
         assert_eq!(pages.len(), headings.len());
+        // Of several policies the first one's flights are drawn, which the heading says.
+        let named = format!("Trajectories and landings, {}", policies[0]);
+        assert_eq!(texts.contains(&named), policies.len() > 1, "{texts}");
         for (page, heading) in pages.iter().zip(headings) {
             let texts = super::super::samples::texts(page);
             assert!(headings.iter().all(|one| texts.contains(one) == (*one == heading)), "{name}: {heading} and {texts}");
@@ -307,7 +310,7 @@ fn outcome_bars_state_counts_shares_and_the_interval() {
         "626 (6.3 %)",
         "9999 (> 99.9 %)",
         "1 (< 0.1 %)",
-        "slid at takeoff",
+        "slid at take-off",
         "81.2 % (80.4 to 82.0 %)",
     ] {
         assert!(texts.contains(words), "{words:?} is missing: {texts}");

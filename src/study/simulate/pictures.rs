@@ -132,7 +132,8 @@ fn format_errors(errors: &Uncertainty) -> String {
     let words: Vec<String> = given
         .map(|(key, deviation, unit)| {
             let name = key.trim_end_matches("_m_s").trim_end_matches("_m").trim_end_matches("_deg").trim_end_matches("_fraction");
-            format!("{} {} {unit}", name.replace("_sigma", "").replace('_', " "), shortest(deviation))
+            let name = name.replace("_sigma", "").replace('_', " ").replace("takeoff", "take-off");
+            format!("{name} {} {unit}", shortest(deviation))
         })
         .collect();
     let deviations = match errors.distribution {
