@@ -16,7 +16,7 @@ use super::{
 use crate::terrain::Mesh;
 
 /// The greatest height of the view.
-const TALL_MM: f64 = 85.0;
+const TALL_MM: f64 = 76.0;
 /// Room beside what is shown, as a share of its extent.
 const BESIDE: f64 = 0.04;
 

@@ -30,6 +30,7 @@ fn a_path_behind_a_block_is_dashed_and_its_hops_are_listed() {
         hops.push(hop(&ground, [&pair[0], &pair[1]], &window, &arc, hops.last().map_or(0.0, |hop| hop.landing.along_m)));
     }
     let path = HopPath::of_hops(hops, ground.envelope().hopper());
+    let single = HopPath::of_hops(path.hops[..1].to_vec(), ground.envelope().hopper());
     let line = |name| MeshRouteLine { name, path: &path, gravity_m_s2: 9.81 };
     let mut figure = MeshRouteFigure {
         caption: Caption::new("A block", "two hops behind it"),
@@ -67,7 +68,6 @@ fn a_path_behind_a_block_is_dashed_and_its_hops_are_listed() {
     let free = draw_mesh_route(&figure).unwrap().to_svg().unwrap();
     assert!(lines(&hidden) > lines(&free) + 3, "{} {}", lines(&hidden), lines(&free));
     assert!(!free.contains("behind a facet"), "what is not drawn has no words");
-    let single = HopPath::of_hops(path.hops[..1].to_vec(), ground.envelope().hopper());
     figure.routes = vec![MeshRouteLine { path: &single, ..line("") }];
     assert!(draw_mesh_route(&figure).unwrap().to_svg().unwrap().contains("path, 1 hop<"));
     // Two paths have their names; without one the goal is not reached.

@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// The greatest height of the map, which shares its page with the oblique view.
-const TALL_MM: f64 = 80.0;
+const TALL_MM: f64 = 72.0;
 /// About so many contour lines.
 const CONTOURS: f64 = 12.0;
 /// Above this number of hops only some of the landings have their number.
