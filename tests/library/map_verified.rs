@@ -16,7 +16,7 @@ use chta::{
     ground::{DemGround, MapPosition, Surface, Windows},
     path::{Hop, HopPath, StatedValue, ViolatedLimit, Violation, execute},
     quantity::{Angle, AngleInterval, MapPoint, SlopeInterval},
-    reach::map::{HopMap, Post, PostHops, Search, joined, path_hops, search, verify},
+    reach::map::{HopMap, NodeLattice, Post, PostHops, Search, joined, path_hops, search, verify},
     terrain::{Dem, GeoReference, OverlaidDem, Overlays, read_dem, read_friction_raster, read_keep_out},
     world::{Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
 };
@@ -36,14 +36,18 @@ fn path_to(hops: &PostHops, map: &HopMap, goal: Post, choice: TakeoffChoice) -> 
 
 /// Flies the paths to every `step`-th post again; returns the number of hops.
 fn all_hold(ground: DemGround, start: Post, stride: usize, step: usize, what: &str) -> usize {
-    let hops = PostHops::new(ground, stride).unwrap();
+    hold_over(&PostHops::new(ground, stride).unwrap(), start, step, what)
+}
+
+/// The same over nodes that are posts or not.
+fn hold_over(hops: &PostHops, start: Post, step: usize, what: &str) -> usize {
     let start = hops.nearest_usable(start).unwrap_or(start);
-    let map = map_from(&hops, start);
+    let map = map_from(hops, start);
     let mut flown = 0;
     for (number, index) in (0..hops.lattice().count()).step_by(step).enumerate() {
         let goal = hops.lattice().node(index);
-        let Some(path) = path_to(&hops, &map, goal, CHOICES[number % 3]) else { continue };
-        let execution = verify(&hops, &path, start, goal);
+        let Some(path) = path_to(hops, &map, goal, CHOICES[number % 3]) else { continue };
+        let execution = verify(hops, &path, start, goal);
         let said: Vec<String> = execution.violations.iter().map(ToString::to_string).collect();
         assert!(execution.passes(), "{what}, {start:?} to {goal:?}: {said:#?}\n{:#?}", path.hops.first());
         for hop in &path.hops {
@@ -116,6 +120,28 @@ fn paths_over_fine_and_coarse_posts_hold_when_flown_again() {
         }
     }
     assert!(flown > 5000, "only {flown} hops");
+}
+
+/// Nodes between posts, whose heights have rounding of their own: high above the datum, and far from the origin.
+#[test]
+fn paths_over_finer_nodes_hold_when_flown_again() {
+    let mut draw = Draw::seeded(89);
+    let mut flown = 0;
+    for (spacing_m, origin_m, base_m) in [(0.3, 0.0, 0.0), (5.0, 75_362.5, 500.0), (7.3, 6e5, -2_000.0)] {
+        for number in 0..9 {
+            let heights = (0..64).map(|_| base_m + draw.unit() * 0.5 * spacing_m).collect();
+            let map =
+                GeoReference::local(MapPoint::new(origin_m, -origin_m), spacing_m, spacing_m * draw.uniform(0.6, 1.5)).unwrap();
+            let speed_m_s = (1.6 * 2.5 * spacing_m).sqrt();
+            let limits = HopperLimits::with_speeds(speed_m_s, speed_m_s);
+            let dem = Dem::new(8, 8, heights, map).unwrap();
+            let lattice = NodeLattice::finer(&dem, 2 + number % 3);
+            let hops = PostHops::over(ground(dem, limits, &friction(0.9), 1.6), lattice).unwrap();
+            let start = Post { row: lattice.rows / 2, col: lattice.cols / 2 };
+            flown += hold_over(&hops, start, 3, &format!("nodes of posts {spacing_m} m apart"));
+        }
+    }
+    assert!(flown > 2_000, "only {flown} hops");
 }
 
 #[test]

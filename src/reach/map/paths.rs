@@ -67,18 +67,27 @@ fn hop_along(test: &HopTest, choice: TakeoffChoice, wanted: impl Fn(LineOfSight,
     generate(test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts), loft }], choice, Split::default()).ok()
 }
 
-/// Joins the hops of a path to one [`HopPath`] over the map, with distances along it from its start.
+/// Joins the hops of a path to one [`HopPath`] over the map, with distances along it from its start. Its contacts are the nodes themselves:
+/// between posts the heights of the slices on both sides of a node may differ from each other by rounding.
 pub fn joined(hops: &PostHops, path: &[MapHop]) -> HopPath {
     let mut begin_m = 0.0;
     let mut flown: Vec<Hop> = Vec::with_capacity(path.len());
     for hop in path.iter().flat_map(|hop| &hop.path.hops) {
         let run_m = hop.landing.along_m;
-        let along = |point: &ContactPoint, along_m| ContactPoint { along_m, station: None, ..*point };
+        let along = |point: &ContactPoint, along_m| ContactPoint { along_m, station: None, ..at_node(hops, point) };
         let end_m = begin_m + run_m;
         flown.push(Hop { takeoff: along(&hop.takeoff, begin_m), landing: along(&hop.landing, end_m), ..*hop });
         begin_m = end_m;
     }
     HopPath::of_hops(flown, hops.ground().hopper())
+}
+
+/// A contact at the node that lies there.
+fn at_node(hops: &PostHops, point: &ContactPoint) -> ContactPoint {
+    let lattice = hops.lattice();
+    let nearest = lattice.nearest(hops.ground().terrain().dem().georeference(), point.point_m.xy());
+    let there = hops.position(nearest).filter(|node| node.at == point.point_m.xy());
+    there.map_or(*point, |node| ContactPoint { point_m: point.point_m.xy().coords.push(node.z_m).into(), ..*point })
 }
 
 /// Flies a joined path again over the ground, from one node to another, by the independent checker.
