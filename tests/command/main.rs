@@ -23,6 +23,7 @@ mod exit_status;
 mod footprint;
 mod free_route;
 mod free_studies;
+mod gdal_docs;
 mod gis;
 mod guide;
 mod hop_on_map;

@@ -118,7 +118,7 @@ fn the_pictures_of_a_run_have_one_format() {
         let mut names: Vec<String> = fs::read_dir(desk.path().join("out"))
             .unwrap()
             .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
-            .filter(|name| name.ends_with(".svg") || name.ends_with(".png"))
+            .filter(|name| matches!(name.rsplit_once('.'), Some((_, "svg" | "png"))))
             .collect();
         names.sort();
         names

@@ -180,7 +180,7 @@ fn missions_are_compared_as_they_are_planned() {
     let files = ["mission.toml", "slower.toml", "weak.toml"];
     let compared = desk.json(&[&["compare"], &files[..]].concat());
     for (row, file) in compared["compared"].as_array().unwrap().iter().zip(files) {
-        let plan: serde_json::Value = serde_json::from_str(&desk.run(&["plan", file, "--format", "json"]).stdout).unwrap();
+        let plan: Value = serde_json::from_str(&desk.run(&["plan", file, "--format", "json"]).stdout).unwrap();
         for key in ["hops", "verdict"] {
             assert_eq!(row[key], plan[key], "{file}: {row}");
         }

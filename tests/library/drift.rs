@@ -1,7 +1,12 @@
 //! Trials in any direction: against the closed form on level ground, flight by flight, and cell by cell.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its scene stops")]
-#![allow(clippy::cast_precision_loss, reason = "small counts")]
+#![allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "small counts, cells of a map"
+)]
 
 use chta::{
     ground::DemGround,
