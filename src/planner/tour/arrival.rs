@@ -1,8 +1,8 @@
 //! The shortest stretch outside the condition of a layer with which a path may arrive at a stop that is outside.
 //!
 //! ```text
-//!   held  --flight-->  outside  --rest, flight-->  outside  --rest, flight-->  stop
-//!         |<------------------- the shortest of all -------------------->|
+//!   held  - flight ->  outside  - rest, flight ->  outside  - rest, flight ->  stop
+//!         |<------------------- the shortest of all ------------------->|
 //! ```
 //!
 //! A search backwards from the stop, over places outside alone: it ends at the first place where the condition holds, or at the start of the
