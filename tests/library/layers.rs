@@ -213,7 +213,7 @@ const LONGER_COMMANDS: [(&str, usize, &str); 4] = [
     ("run.rs", 65, "meshes, wheels and targets go on to files of their own"),
     (
         "simulate/mod.rs",
-        77,
+        81,
         "experiments, meshes, wheels, legs and targets go on to files of their own; a raster of rests beside landings",
     ),
 ];

@@ -157,6 +157,8 @@ fn toml() -> impl Strategy<Value = String> {
             // Both or neither; a heading error only on a raster. An objective or a budget of totals excludes an effort, a weighing of risk,
             // a budget of success, and bounces beside a mission time.
             ("uncertainty", "height_sigma_m" | "height_correlation_m") | ("search", "risk") | ("contact", _) => degrees,
+            // A heading that is not controlled goes with few other keys: a test of its own.
+            ("uncertainty", "heading" | "takeoff_speed_m_s" | "takeoff_angle_deg") => false,
             ("uncertainty", "heading_sigma_deg" | "heading_bias_sigma_deg") => ground < 2,
             // A budget of success without errors, an energy without a mass, and shares that leave too little for other keys, are refused.
             ("budget", "estimated_success_min") => degrees && !points,
@@ -338,6 +340,14 @@ fn every_key_reaches_the_document() {
                 with("hopper", "mass_kg", "50");
                 with("hopper", "isp_s", "200");
             }
+            ("uncertainty", "heading" | "takeoff_speed_m_s" | "takeoff_angle_deg") => {
+                with("terrain", "dem", "x.tif");
+                with("terrain", "start_m", "[0, 0]");
+                for (name, value) in [("heading", "uncontrolled"), ("takeoff_speed_m_s", "1"), ("takeoff_angle_deg", "45")] {
+                    with("uncertainty", name, value);
+                }
+                with("uncertainty", "hop_limit", "3");
+            }
             ("uncertainty", "height_sigma_m") => with("uncertainty", "height_correlation_m", "3"),
             ("uncertainty", "height_correlation_m") => with("uncertainty", "height_sigma_m", "3"),
             ("hopper", "roughness_max_m") => with("hopper", "footprint_m", "3"),
@@ -386,5 +396,24 @@ fn every_shipped_scenario_reads_back_from_its_document() {
         let scenario = scenario.unwrap_or_else(|problems| panic!("{}: {problems:?}", file.display()));
         let document = scenario_document(&scenario, &|path| path.to_string_lossy().into_owned());
         assert_eq!(Scenario::from_document(&document), Ok(scenario), "{}", file.display());
+    }
+}
+
+/// Without a goal, and with the errors that have a meaning where the heading is not controlled.
+#[test]
+fn scenarios_without_a_plan_read_back_from_their_documents() {
+    let always = "body.name = \"moon\"\nterrain.dem = \"x.tif\"\nterrain.start_m = [1.5, -2.0]\nuncertainty.heading = \"uncontrolled\"\n\
+                  uncertainty.takeoff_speed_m_s = 0.25\nuncertainty.takeoff_angle_deg = 62.5\nuncertainty.hop_limit = 7\n";
+    for more in [
+        "",
+        "uncertainty.trials = 12\nuncertainty.seed = 3\nuncertainty.takeoff_speed_sigma_fraction = 0.02\n",
+        "uncertainty.friction_sigma = 0.1\nuncertainty.drift_along_sigma_m = 0.5\nuncertainty.takeoff_angle_bias_sigma_deg = 1.5\n",
+        "uncertainty.height_sigma_m = 0.2\nuncertainty.height_correlation_m = 4.0\nuncertainty.distribution = \"uniform\"\n",
+    ] {
+        let scenario = Scenario::new(Entries::from_toml(&format!("{always}{more}")));
+        let scenario = scenario.unwrap_or_else(|problems| panic!("{more}: {problems:?}"));
+        let document = scenario_document(&scenario, &|path| path.to_string_lossy().into_owned());
+        assert_eq!(Scenario::from_document(&document), Ok(scenario), "{document}");
+        assert!(document["terrain"].get("goal_m").is_none(), "{document}");
     }
 }
