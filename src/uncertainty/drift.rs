@@ -63,7 +63,7 @@ impl Simulation {
     /// let command = DriftCommand { takeoff_speed_m_s: 4.0, takeoff_angle: Angle::from_degrees(45.0), hops: 1 };
     /// let drift = Simulation::drifting(&ground, MapPoint::new(100.0, -100.0), command, Uncertainty::NONE)?;
     /// let summary = drift.run(&TrialOptions { trials: 100, ..TrialOptions::default() }, &mut (), &())?;
-    /// assert!((summary.landings[0].error_m.unwrap().mean - 10.0).abs() < 1e-9);
+    /// assert!((summary.landings[0].error.mean_m - 10.0).abs() < 1e-9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn drifting(
