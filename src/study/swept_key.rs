@@ -143,7 +143,11 @@ mod tests {
     fn every_key_that_takes_a_number_can_be_varied_and_no_other() {
         for key in &CATALOGUE {
             // A share is at most 1.
-            let range = if matches!(key.kind, Kind::Number { max, .. } if max < 3.0) { "0.25:0.75:3" } else { "1:3:3" };
+            let range = match key.kind {
+                Kind::Number { max, .. } if max < 3.0 => "0.25:0.75:3".to_owned(),
+                Kind::Count { min, .. } => format!("{}:{}:3", min.max(1), min.max(1) + 2),
+                _ => "1:3:3".to_owned(),
+            };
             let text = format!("{}={range}", key.path());
             let parsed = SweptKey::parse(&text);
             let number = matches!(key.kind, Kind::Number { .. } | Kind::AngleOrUnlimited | Kind::CountOrAuto | Kind::Count { .. });
