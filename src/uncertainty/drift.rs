@@ -1,7 +1,7 @@
 //! Robots that hop in any direction: small-body hoppers that cannot choose their heading.
 
 use super::{
-    Mission, Simulation, SimulationError, UncertaintyProblem,
+    Mission, Simulation, SimulationError,
     options::MissionPoint,
     simulation::GroundAndPlan,
     trial::{Plan, PlannedHop},
@@ -78,7 +78,7 @@ impl Simulation {
         }
         let found = command.takeoff_speed_m_s;
         if !(found.is_finite() && found > 0.0) {
-            return Err(UncertaintyProblem::Negative { what: "takeoff_speed_m_s", found, unit: "m/s" }.into());
+            return Err(SimulationError::CommandedSpeed { found });
         }
         if command.hops == 0 {
             return Err(SimulationError::NoHops);

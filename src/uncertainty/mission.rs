@@ -71,47 +71,24 @@ pub struct MeshAims {
 }
 
 impl Mission {
+    const fn new(ground: MissionGround, path: HopPath, [start, goal]: [ContactPoint; 2]) -> Self {
+        Self { ground, path, start, goal, replanning: None, planned_over: None, next: None, drift: None }
+    }
+
     /// A path along a chain: flights stay in its vertical plane.
     pub fn along_chain(test: HopTest, path: HopPath, start: Station, goal: Station) -> Self {
-        let [start, goal] = [start, goal].map(|station| test.chain().contact_point(&station));
-        Self {
-            ground: MissionGround::Chain(ChainGround::new(test)),
-            path,
-            start,
-            goal,
-            replanning: None,
-            planned_over: None,
-            next: None,
-            drift: None,
-        }
+        let ends = [start, goal].map(|station| test.chain().contact_point(&station));
+        Self::new(MissionGround::Chain(ChainGround::new(test)), path, ends)
     }
 
     /// A path over a DEM, in any direction: flights follow their heading.
     pub const fn over_dem(ground: DemGround, path: HopPath, start: ContactPoint, goal: ContactPoint) -> Self {
-        Self {
-            ground: MissionGround::Map(ground),
-            path,
-            start,
-            goal,
-            replanning: None,
-            planned_over: None,
-            next: None,
-            drift: None,
-        }
+        Self::new(MissionGround::Map(ground), path, [start, goal])
     }
 
     /// A path over a mesh, under overhangs and through caves: flights follow their heading, up to the first facet that they meet.
     pub const fn over_mesh(ground: MeshGround, path: HopPath, start: ContactPoint, goal: ContactPoint) -> Self {
-        Self {
-            ground: MissionGround::Mesh(ground),
-            path,
-            start,
-            goal,
-            replanning: None,
-            planned_over: None,
-            next: None,
-            drift: None,
-        }
+        Self::new(MissionGround::Mesh(ground), path, [start, goal])
     }
 
     /// The same mission, and the one that follows from its goal on.

@@ -94,6 +94,12 @@ pub enum SimulationError {
         /// How many.
         trials: u64,
     },
+    /// A commanded speed that no hop has.
+    #[error("takeoff_speed_m_s is {found} m/s, expected a finite number above 0")]
+    CommandedSpeed {
+        /// What was given, m/s.
+        found: f64,
+    },
     /// A hop limit below 1.
     #[error("hop_limit is 0, expected at least 1: leave it out for twice the planned hops and ten more")]
     NoHops,
@@ -131,7 +137,9 @@ pub enum SimulationError {
     )]
     NoGrip,
     /// A start, goal or node without ground under it.
-    #[error("{which} lies at ({x_m} m, {y_m} m), where the DEM has no ground: give the DEM that the chain was sliced from")]
+    #[error(
+        "{which} lies at ({x_m} m, {y_m} m), where the DEM has no ground: give a place on it, or for a chain the DEM that it was sliced from"
+    )]
     NoGround {
         /// Which point.
         which: MissionPoint,

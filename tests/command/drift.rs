@@ -124,5 +124,12 @@ fn what_does_not_go_with_it_is_refused_and_mended_as_the_message_says() {
     assert_eq!(desk.run(&[&["simulate", "bare.toml"], &sets[..]].concat()).status, 0);
     let controlled = ["simulate", "drift.toml", "--set", "uncertainty.heading=controlled", "--set", "terrain.goal_m=[40, 30]"];
     refused(&controlled, &["uncertainty.takeoff_speed_m_s is the command of a robot whose heading is not controlled"]);
-    refused(&["simulate", "drift.toml", "--set", "terrain.start_m=[99, 0]"], &["(99"]);
+    refused(&["simulate", "drift.toml", "--set", "terrain.start_m=[99, 0]"], &["(99", "give a place on it"]);
+    // What is about plans alone says so; without any such key there is nothing to say.
+    for key in ["search.risk=ignored", "budget.hops_max=3", "hopper.apex_height_max_m=0.1", "derating.friction=0.5"] {
+        let ran = desk.run(&["simulate", "drift.toml", "--set", key]);
+        let said = format!("{} has no effect where uncertainty.heading", key.split('=').next().unwrap());
+        assert!(ran.status == 0 && ran.stderr.contains(&said), "{key}: {}", ran.stderr);
+    }
+    assert_eq!(desk.run(&["simulate", "drift.toml"]).stderr, "");
 }

@@ -12,12 +12,11 @@ use chta::{
     ground::DemGround,
     quantity::{Angle, MapPoint},
     terrain::{Dem, GeoReference, OverlaidDem, Overlays},
-    uncertainty::{
-        DriftCommand, HopRecord, Observer, RestDensity, Simulation, SimulationError, TrialOptions, TrialOutcome, TrialRecord,
-        Uncertainty,
-    },
+    uncertainty::{DriftCommand, RestDensity, Simulation, SimulationError, TrialOptions, TrialOutcome, Uncertainty},
     world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
+
+use crate::fly::plans::Listener;
 
 /// Posts 1 m apart; `height` of a post at (x, y).
 fn ground(side: usize, height: impl Fn(f64, f64) -> f64, gravity_m_s2: f64) -> DemGround {
@@ -35,26 +34,6 @@ fn command(range_m: f64, angle_deg: f64, gravity_m_s2: f64, hops: u32) -> DriftC
     let takeoff_angle = Angle::from_degrees(angle_deg);
     let takeoff_speed_m_s = (range_m * gravity_m_s2 / (2.0 * takeoff_angle.radians()).sin()).sqrt();
     DriftCommand { takeoff_speed_m_s, takeoff_angle, hops }
-}
-
-#[derive(Default)]
-struct Kept {
-    hops: Vec<HopRecord>,
-    trials: Vec<TrialRecord>,
-}
-
-impl Observer for Kept {
-    fn wants_records(&self) -> bool {
-        true
-    }
-
-    fn hop(&mut self, hop: &HopRecord) {
-        self.hops.push(*hop);
-    }
-
-    fn trial(&mut self, trial: &TrialRecord) {
-        self.trials.push(*trial);
-    }
 }
 
 const TRIALS: u64 = 6_000;
@@ -76,7 +55,7 @@ fn on_level_ground_hops_end_on_a_circle_and_two_of_them_as_a_walk_of_two_steps()
             Uncertainty::NONE,
         )
         .unwrap();
-        let mut kept = Kept::default();
+        let mut kept = Listener::default();
         let summary = simulation.run(&options(), &mut kept, &()).unwrap();
         assert_eq!(summary.outcomes.of(TrialOutcome::Reached), TRIALS);
         let n = TRIALS as f64;
@@ -111,7 +90,7 @@ fn every_flight_is_that_of_its_command_and_every_cell_counts_its_rests() {
     let start = MapPoint::new(30.3, -29.6);
     let errors = Uncertainty { takeoff_speed_sigma_fraction: 0.05, drift_along_sigma_m: 0.2, ..Uncertainty::NONE };
     let simulation = Simulation::drifting(&ground, start, command(8.0, 50.0, 1.6, 3), errors).unwrap();
-    let mut kept = Kept::default();
+    let mut kept = Listener::default();
     let summary = simulation.run(&options(), &mut kept, &()).unwrap();
     for hop in kept.hops.iter().take(2_000) {
         let liftoff = chta::uncertainty::LiftoffVelocity {
@@ -155,6 +134,7 @@ fn what_cannot_drift_is_refused() {
     assert!(matches!(refused(MapPoint::new(5.0, -5.0), DriftCommand { hops: 0, ..usual }), SimulationError::NoHops));
     for takeoff_speed_m_s in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let refusal = refused(MapPoint::new(5.0, -5.0), DriftCommand { takeoff_speed_m_s, ..usual });
-        assert!(matches!(refusal, SimulationError::Uncertainty(_)), "{refusal}");
+        assert!(matches!(refusal, SimulationError::CommandedSpeed { .. }), "{refusal}");
+        assert!(refusal.to_string().ends_with("expected a finite number above 0"), "{refusal}");
     }
 }

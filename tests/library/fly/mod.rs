@@ -11,7 +11,7 @@
 mod contact;
 mod lasting;
 mod outcomes;
-mod plans;
+pub(crate) mod plans;
 mod scene;
 mod tallies;
 mod terrains;
