@@ -50,8 +50,8 @@ impl Draft {
 /// was, for silence about a limit that is not kept would be a promise.
 fn is_of_plans(key: &Key, place: &Place) -> bool {
     match (key.table, key.name) {
-        ("budget", _) => true,
-        (
+        ("budget", _)
+        | (
             "hopper",
             "takeoff_angle_min_deg"
             | "takeoff_angle_max_deg"
