@@ -50,6 +50,11 @@ impl Reply {
         PyBytes::new(py, self.0.json.as_bytes())
     }
 
+    /// The ground along its path, x and z one after the other, m; empty where there is none.
+    fn ground<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.0.ground.iter().flat_map(|point| [point.x_m, point.z_m]).collect::<Vec<f64>>().into_pyarray(py)
+    }
+
     /// Its picture, as SVG or PNG; `None` where it has none.
     fn picture<'py>(&self, py: Python<'py>, png: bool) -> PyResult<Option<Bound<'py, PyBytes>>> {
         let format = if png { PictureFormat::Png } else { PictureFormat::Svg };

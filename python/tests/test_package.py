@@ -155,3 +155,20 @@ def test_extras_are_used_where_they_are() -> None:
     assert list(rays.to_frame()["heading_deg"]) == [0, 90, 180, 270]
     both = chta.compare(["data/scenarios/simple.toml", "data/scenarios/simple_reduced.toml"]).to_frame()
     assert list(both["hops"]) == [1, 5]
+
+
+def test_a_plan_is_drawn_over_its_ground() -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    for name in (SIMPLE, "data/scenarios/lunar_rille.toml"):
+        plan = pickle.loads(pickle.dumps(chta.Scenario.open(name).plan()))
+        assert plan.ground is not None and plan.ground.shape[1] == 2
+        distance, elevation = plan.ground.T
+        ground, *hops = plan.plot(plt.figure().gca()).get_lines()
+        assert list(ground.get_xdata()) == list(distance) and len(hops) == plan.hop_count
+        for hop in hops:
+            ends = np.array([hop.get_xydata()[0], hop.get_xydata()[-1]])
+            np.testing.assert_allclose(np.interp(ends[:, 0], distance, elevation), ends[:, 1], atol=1e-6)
+    assert chta.Scenario.open("data/mesh_scenarios/overhang.toml").plan().ground is None

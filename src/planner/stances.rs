@@ -135,7 +135,7 @@ impl<'g> StanceSampler<'g> {
         let normal = contact.facets().iter().map(|facet| facet.normal).sum();
         let up = self.ground.up_over(normal);
         for (height_m, heading) in poses {
-            match self.ground.stand_over(contact, up, *heading, *height_m) {
+            match self.ground.try_to_stand_over(contact, up, *heading, *height_m) {
                 Ok(stance) => return (Some(stance), refused),
                 Err(NoStance::InsideRock | NoStance::Trunk(_) | NoStance::NoContact(_)) => refused.trunk += 1,
                 Err(NoStance::TooFewContacts { .. }) => refused.contacts += 1,

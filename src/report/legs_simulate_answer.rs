@@ -37,7 +37,7 @@ pub struct LegsTrialsRecord {
     pub success_ci95: [f64; 2],
     /// How many ended in each way that occurs.
     pub outcomes: Vec<LegsOutcomeRecord>,
-    /// During which hop trials ended that did not reach the goal; 0: after the last one, off the goal.
+    /// During which hop, or move of a robot that also walks, trials ended that did not reach the goal; 0: after the last one, off the goal.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ended_in_hops: Vec<EndedInHopRecord>,
     /// Half of all trials ended nearer to the goal than this, horizontally.
@@ -50,16 +50,17 @@ pub struct LegsTrialsRecord {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LegsOutcomeRecord {
     /// Which way: `reached`, `missed`, `slid_at_takeoff`, `slid_at_landing`, `damaged`, `crashed` (the trunk met the ground in flight), `fell` (it
-    /// cannot stand where it came down), `lost`, `stuck` or `hop_limit`.
+    /// cannot stand where it came down, or where a walk led), `lost`, `walk_stopped` (a limit refused a walk), `walk_failed`, `stuck` or
+    /// `hop_limit`.
     pub outcome: LegsOutcome,
     /// How many.
     pub trials: u64,
 }
 
-/// How many trials ended during a hop.
+/// How many trials ended during a hop, or a move.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EndedInHopRecord {
-    /// The number of the hop.
+    /// Its number.
     pub hop: usize,
     /// How many.
     pub trials: u64,
@@ -97,6 +98,7 @@ impl From<&LegsSummary> for LegsTrialsRecord {
 /// The text of `chta simulate` for a robot with legs.
 pub fn legs_simulate_text(answer: &LegsSimulateAnswer) -> String {
     let mut sheet = Sheet::default();
+    let each = if answer.plan.walk.is_some() { "move" } else { "hop" };
     let records = if answer.compare.is_empty() { answer.simulation.as_slice() } else { &answer.compare };
     for record in records {
         let [low, high] = record.success_ci95;
@@ -109,8 +111,8 @@ pub fn legs_simulate_text(answer: &LegsSimulateAnswer) -> String {
         }
         for EndedInHopRecord { hop, trials } in &record.ended_in_hops {
             match hop {
-                0 => sheet.line(format_args!("  off the goal after the last hop: {trials}")),
-                hop => sheet.line(format_args!("  ended in hop {hop}: {trials}")),
+                0 => sheet.line(format_args!("  off the goal after the last {each}: {trials}")),
+                hop => sheet.line(format_args!("  ended in {each} {hop}: {trials}")),
             }
         }
         if let (Some(median_m), Some(most_m)) = (record.goal_distance_median_m, record.goal_distance_p95_m) {

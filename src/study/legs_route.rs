@@ -79,7 +79,7 @@ pub enum LegsRouteError {
     },
     /// An end without an elevation.
     #[error(
-        "the {end} at ({}, {}) m has no elevation, expected a place whose ground is known: no-data is no ground; choose another place, or a DEM without          the gap",
+        "the {end} at ({}, {}) m has no elevation, expected a place whose ground is known: no-data is no ground; choose another place, or a DEM without the gap",
         format_number(at.x), format_number(at.y)
     )]
     NoElevation {
@@ -90,7 +90,7 @@ pub enum LegsRouteError {
     },
     /// More posts than are taken as a mesh.
     #[error(
-        "found {posts} posts, expected at most {POSTS_MAX} for a robot with legs, which stands on the facets between them: give search.bounds_m =          [[x, y, z], [x, y, z]] about start and goal, or a part of the DEM (gdal_translate -projwin)"
+        "found {posts} posts, expected at most {POSTS_MAX} for a robot with legs, which stands on the facets between them: give search.bounds_m = [[x, y, z], [x, y, z]] about start and goal, or a part of the DEM (gdal_translate -projwin)"
     )]
     TooManyPosts {
         /// The posts.
@@ -98,7 +98,7 @@ pub enum LegsRouteError {
     },
     /// A point without trunk and legs on a DEM with overlays.
     #[error(
-        "the robot is a point without a trunk, and the scenario lays zones, layers or friction over its map, expected legs: remove robot.file, for a          hopper that obeys them"
+        "the robot is a point without a trunk, and the scenario lays zones, layers or friction over its map, expected legs: remove robot.file, for a hopper that obeys them"
     )]
     PointOnOverlays,
     /// A point without trunk and legs.
@@ -168,6 +168,8 @@ pub struct LegsRouted {
     pub ground: StanceGround,
     /// The DEM with its overlays, of which the whole friction counts; `None` over a mesh.
     pub(super) map: Option<OverlaidDem>,
+    /// How it walks; `None` of a robot that hops alone.
+    pub(super) walking: Option<Walking>,
     /// The reference system of the map, if it is known.
     pub projection: Option<MapProjection>,
     /// The roadmap and its best path.
@@ -251,7 +253,7 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
     }
     warnings.extend(left_out(scenario, grown.end, facets));
     warnings.extend(assumptions(&ground));
-    warnings.extend(walking.as_ref().map(|_| Walking::assumptions(scenario)).unwrap_or_default());
+    warnings.extend(walking.as_ref().map(|_| Walking::assumption()));
     warnings.extend(without_effect(question.scenario));
     let gap = match &walking {
         _ if grown.route.path.is_some() => None,
@@ -289,7 +291,7 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
     };
     warnings.extend(beyond_joints(&answer.stances));
     let robot_files = std::iter::once(file).chain(read.files).collect();
-    Ok(LegsRouted { ground, map, projection, grown, path, answer, warnings, robot_files })
+    Ok(LegsRouted { ground, map, walking, projection, grown, path, answer, warnings, robot_files })
 }
 
 /// The roadmap of stances, over which the robot hops alone or also walks.

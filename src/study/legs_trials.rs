@@ -90,12 +90,15 @@ fn mission(routed: &LegsRouted, scenario: &Scenario) -> Result<Option<LegsMissio
     let hops = roadmap.hops_to(routed.grown.ends.1).into_iter().enumerate();
     let mut aims: Vec<_> = hops.filter_map(|(node, hops)| Some((roadmap.contact(node).clone(), hops?))).collect();
     aims.sort_by_key(|(_, hops)| *hops);
+    let walking = routed.walking.as_ref().map(|walking| walking.in_trials(routed, scenario)).transpose();
+    let walking = walking.map_err(SimulationError::from)?;
     Ok(Some(LegsMission {
         whole,
         planning: planning.clone(),
         stances: found.contacts.iter().map(|node| roadmap.contact(*node).clone()).collect(),
-        arcs: found.arcs(),
+        moves: found.moves.clone(),
         aims,
+        walking,
         takeoff: scenario.search.takeoff,
     }))
 }
@@ -114,6 +117,13 @@ fn left_out(scenario: &Scenario) -> Vec<String> {
         warnings.push(
             "trials of a robot with legs have the ground and the friction as they are known: height_sigma_m and friction_sigma of [uncertainty] \
              change nothing"
+                .to_owned(),
+        );
+    }
+    if scenario.drives().is_some() {
+        warnings.push(
+            "a robot with legs that walks stands at the end of a walk in the planned orientation, as high over the ground as planned: of its walks \
+             heading and length have errors, as [drive] states them"
                 .to_owned(),
         );
     }

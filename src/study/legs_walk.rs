@@ -1,7 +1,7 @@
 //! The moves of a robot with legs that walks and hops over a DEM, each walked or flown again by the independent checker.
 
 use super::{
-    LegsRouteError, MeshRouteError,
+    LegsRouteError, LegsRouted, MeshRouteError,
     travel::{Driven, agreed, drive_leg, driven_again, hop_leg, sums_record},
 };
 use crate::{
@@ -9,12 +9,14 @@ use crate::{
     ground::{DemGround, Stance, StanceGround},
     path::HopPath,
     planner::{
-        WalkingStances,
-        roadmap::{GrownRoadmap, RoadmapMove, RoadmapPath},
+        LabelCap, WalkingStances,
+        roadmap::{GrownRoadmap, Left, RoadmapMove, RoadmapPath, RoadmapQuestion},
     },
+    progress::Cancelled,
     report::{DriveRefusalRecord, HopRecord, LegsWalkRecord, TravelLegRecord, TravelTotalsRecord},
     scenario::{DriveKeys, Scenario},
     terrain::{MapProjection, OverlaidDem},
+    uncertainty::LegsWalking,
 };
 
 /// The ground that a robot walks over, and how it walks.
@@ -50,17 +52,34 @@ impl Walking {
         }
     }
 
-    /// What walking assumes, and what it leaves out.
-    pub(super) fn assumptions(scenario: &Scenario) -> Vec<String> {
-        let mut found = vec![
-            "walking is judged by the limits of [drive] along the straight line under the root: neither the feet nor the trunk are looked at between \
+    /// What walking assumes.
+    pub(super) fn assumption() -> String {
+        "walking is judged by the limits of [drive] along the straight line under the root: neither the feet nor the trunk are looked at between \
              two stances"
-                .to_owned(),
-        ];
-        if scenario.uncertainty.is_some() {
-            found.push("[uncertainty] changes nothing here: trials of a robot that walks are not made".to_owned());
-        }
-        found
+                .to_owned()
+    }
+
+    /// How it walks in trials of a plan.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn in_trials(&self, routed: &LegsRouted, scenario: &Scenario) -> Result<LegsWalking, Cancelled> {
+        let (objective, budgets) = (scenario.full_objective(), scenario.total_budgets());
+        let question = RoadmapQuestion {
+            objective: &objective,
+            budgets: &budgets,
+            commands: scenario.commands,
+            takeoff: scenario.search.takeoff,
+            cap: LabelCap::default(),
+        };
+        let roadmap = &routed.grown.roadmap;
+        let left = roadmap.left(&self.over(&routed.ground), routed.grown.ends, &question)?;
+        let aims = left.into_iter().enumerate().filter_map(|(node, left)| Some((roadmap.contact(node).clone(), left?)));
+        let mut aims: Vec<(Stance, Left)> = aims.collect();
+        aims.sort_by(|(_, a), (_, b)| a.amount.total_cmp(&b.amount).then(a.time_s.total_cmp(&b.time_s)));
+        let DriveKeys { rover, travel, .. } = &self.keys;
+        let amount = objective.amounts()[0];
+        Ok(LegsWalking { ground: self.ground.clone(), rover: rover.clone(), travel: *travel, amount, aims })
     }
 
     /// The moves of a path, and their sums, which are those of the search.

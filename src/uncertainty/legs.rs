@@ -9,11 +9,14 @@
 use nalgebra::{Point3, UnitQuaternion, Vector2, Vector3};
 use rayon::prelude::*;
 
-use super::{Policy, QuantileSketch, SimulationError, TrialOptions, Wilson};
+use super::{
+    LegsWalking, Policy, QuantileSketch, SimulationError, TrialOptions, Wilson, driving::DriveDraws, legs_walk::WalkDraws,
+};
 use crate::{
     ballistics::{Arc, TakeoffChoice},
-    flight::{Biases, Command, Errors, HopErrors, TrialDraws, Uncertainty},
+    flight::{Command, Errors, HopErrors, TrialDraws, Uncertainty},
     ground::{LiftoffVelocity, Pose, Stance, StanceBuffers, StanceGround},
+    planner::roadmap::RoadmapMove,
     progress::{Detail, Meter, Progress, Stage},
     world::{Limit, tolerant_speed_m_s},
 };
@@ -30,8 +33,8 @@ const ON_THE_EDGE: f64 = 1.0e-6;
 /// A flight that has not come down after so many times its planned duration has left the ground.
 const LONGEST: u32 = 4;
 
-/// A robot that replans makes at most so many hops for each planned one, and these beside.
-const HOPS_MOST: (usize, usize) = (3, 20);
+/// A robot that replans makes at most so many moves for each planned one, and these beside.
+const MOVES_MOST: (usize, usize) = (3, 20);
 
 /// How a trial ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -52,15 +55,19 @@ pub enum LegsOutcome {
     Fell,
     /// It left the ground of the mesh.
     Lost,
-    /// No hop leads on from where it believes to stand (replanned).
+    /// A limit refused the line of a walk, or its ground was unknown or kept out: it stopped there.
+    WalkStopped,
+    /// A failure ended its walking.
+    WalkFailed,
+    /// No move leads on from where it believes to stand (replanned).
     Stuck,
-    /// It made the greatest number of hops without ending otherwise (replanned).
+    /// It made the greatest number of moves without ending otherwise (replanned).
     HopLimit,
 }
 
 impl LegsOutcome {
     /// All of them, in the order of results.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Reached,
         Self::Missed,
         Self::SlidAtTakeoff,
@@ -69,6 +76,8 @@ impl LegsOutcome {
         Self::Crashed,
         Self::Fell,
         Self::Lost,
+        Self::WalkStopped,
+        Self::WalkFailed,
         Self::Stuck,
         Self::HopLimit,
     ];
@@ -84,6 +93,8 @@ impl LegsOutcome {
             Self::Crashed => "crashed",
             Self::Fell => "fell",
             Self::Lost => "lost",
+            Self::WalkStopped => "walk_stopped",
+            Self::WalkFailed => "walk_failed",
             Self::Stuck => "stuck",
             Self::HopLimit => "hop_limit",
         }
@@ -101,10 +112,12 @@ pub struct LegsMission {
     pub planning: StanceGround,
     /// The stances of the path.
     pub stances: Vec<Stance>,
-    /// The arc from each to the next.
-    pub arcs: Vec<Arc>,
-    /// Stances from which the goal can be reached, with their hops to it; needed for [`Policy::Replan`].
+    /// The move from each to the next.
+    pub moves: Vec<RoadmapMove>,
+    /// Stances from which the goal can be reached, with their hops to it; needed for [`Policy::Replan`] of a robot that hops alone.
     pub aims: Vec<(Stance, u32)>,
+    /// How it walks; `None` of a robot that hops alone.
+    pub walking: Option<LegsWalking>,
     /// Which of the feasible take-off angles a replanned hop has.
     pub takeoff: TakeoffChoice,
 }
@@ -122,7 +135,7 @@ pub struct LegsSummary {
     pub success: Wilson,
     /// How many ended in each way that occurs.
     pub outcomes: Vec<(LegsOutcome, u64)>,
-    /// By the number of the hop, from 1, how many ended during it otherwise than at the goal; 0: after the last one.
+    /// By the number of the move, from 1, how many ended during it otherwise than at the goal; 0: after the last one.
     pub ended_in: Vec<(usize, u64)>,
     /// How far from the goal the trials ended: median and 95 % quantile, m.
     pub goal_distance_m: Option<[f64; 2]>,
@@ -136,7 +149,7 @@ struct Tried {
 }
 
 /// A hop to make: its velocity, the heading of the robot's landing pose, and how high its root then is over the ground.
-struct Aim {
+pub(super) struct Aim {
     command: Command<()>,
     landing: Pose,
     height_m: f64,
@@ -148,7 +161,8 @@ impl LegsMission {
     ///
     /// A take-off has errors of its speed, elevation and heading; at the landing the trunk is turned by the error of the heading, and the root
     /// moved by the drift. Open loop the robot makes the planned take-offs from wherever it stands. Replanned, it hops from where it believes to
-    /// stand to the stance with the fewest hops to the goal that one hop reaches. The results do not depend on the number of threads.
+    /// stand to the stance with the fewest hops to the goal that one hop reaches. A robot that walks makes the planned move where one begins, and
+    /// else the one by which least is left. The results do not depend on the number of threads.
     ///
     /// # Errors
     /// [`SimulationError`]: invalid errors, no trials, or cancelled.
@@ -172,8 +186,8 @@ impl LegsMission {
             let tried: Vec<Tried> = (done..end)
                 .into_par_iter()
                 .map_init(
-                    || (TrialDraws::seeded(options.seed), StanceBuffers::default()),
-                    |(draws, buffers), trial| self.tried(&rules, (options, trial), draws, buffers),
+                    || (TrialDraws::seeded(options.seed), DriveDraws::seeded(options.seed), StanceBuffers::default()),
+                    |(hops, walks, buffers), trial| self.tried((&rules, errors), (options, trial), (hops, walks), buffers),
                 )
                 .collect();
             for tried in &tried {
@@ -192,17 +206,23 @@ impl LegsMission {
 
     fn tried(
         &self,
-        rules: &Errors,
+        (rules, errors): (&Errors, &Uncertainty),
         (options, trial): (&TrialOptions, u64),
-        draws: &mut TrialDraws,
+        (hops, walks): (&mut TrialDraws, &mut DriveDraws),
         buffers: &mut StanceBuffers,
     ) -> Tried {
-        let biases = rules.begin(draws, trial);
+        let biases = rules.begin(hops, trial);
+        walks.begin(trial);
+        let mut draws = WalkDraws { hops, biases: &biases, walks, distribution: errors.distribution };
         let goal = self.stances[self.stances.len() - 1].pose().root_m;
         let mut at = self.stances[0].clone();
-        let ended = match options.policy {
-            Policy::OpenLoop => self.as_planned(rules, (draws, &biases), &mut at),
-            Policy::Replan => self.replanning(rules, (draws, &biases), &mut at, (buffers, options.goal_tolerance_m)),
+        let most = MOVES_MOST.0 * self.moves.len() + MOVES_MOST.1;
+        let ended = match (options.policy, &self.walking) {
+            (Policy::OpenLoop, _) => self.as_planned(rules, &mut draws, &mut at),
+            (Policy::Replan, None) => self.replanning(rules, &mut draws, &mut at, (buffers, options.goal_tolerance_m, most)),
+            (Policy::Replan, Some(walking)) => {
+                self.walking_on((walking, rules), &mut draws, &mut at, (buffers, options.goal_tolerance_m, most))
+            }
         };
         let goal_distance_m = (at.pose().root_m - goal).xy().norm();
         let at_end = if goal_distance_m <= options.goal_tolerance_m { LegsOutcome::Reached } else { LegsOutcome::Missed };
@@ -210,16 +230,22 @@ impl LegsMission {
         Tried { outcome, ended_in, goal_distance_m }
     }
 
-    fn as_planned(
-        &self,
-        rules: &Errors,
-        (draws, biases): (&mut TrialDraws, &Biases),
-        at: &mut Stance,
-    ) -> Result<(), (LegsOutcome, usize)> {
-        for (number, (pair, arc)) in (1..).zip(self.stances.windows(2).zip(&self.arcs)) {
-            let drawn = rules.draw(draws, biases);
-            let Some(aim) = self.aim([&pair[0], &pair[1]], arc) else { continue };
-            *at = self.hop(rules, at, &aim, &drawn).map_err(|outcome| (outcome, number))?;
+    fn as_planned(&self, rules: &Errors, draws: &mut WalkDraws<'_>, at: &mut Stance) -> Result<(), (LegsOutcome, usize)> {
+        for (number, (pair, planned)) in (1..).zip(self.stances.windows(2).zip(&self.moves)) {
+            let moved = match (planned, &self.walking) {
+                (RoadmapMove::Hop(arc), _) => {
+                    let drawn = rules.draw(draws.hops, draws.biases);
+                    let Some(aim) = self.aim([&pair[0], &pair[1]], arc) else { continue };
+                    self.hop(rules, at, &aim, &drawn)
+                }
+                (RoadmapMove::Walk, Some(walking)) => {
+                    let along = (pair[1].pose().root_m - pair[0].pose().root_m).xy();
+                    let walked = self.walk(walking, at, (along, &pair[1]), draws);
+                    walked.and_then(|stance| stance.ok_or(LegsOutcome::WalkStopped))
+                }
+                (RoadmapMove::Walk, None) => Err(LegsOutcome::WalkStopped),
+            };
+            *at = moved.map_err(|outcome| (outcome, number))?;
         }
         Ok(())
     }
@@ -227,26 +253,27 @@ impl LegsMission {
     fn replanning(
         &self,
         rules: &Errors,
-        (draws, biases): (&mut TrialDraws, &Biases),
+        draws: &mut WalkDraws<'_>,
         at: &mut Stance,
-        (buffers, goal_tolerance_m): (&mut StanceBuffers, f64),
+        (buffers, goal_tolerance_m, most): (&mut StanceBuffers, f64, usize),
     ) -> Result<(), (LegsOutcome, usize)> {
         let goal = self.stances[self.stances.len() - 1].pose().root_m;
-        let most = HOPS_MOST.0 * self.arcs.len() + HOPS_MOST.1;
         for number in 1..=most {
-            let drawn = rules.draw(draws, biases);
-            let pose = *at.pose();
-            let [east_m, north_m] = drawn.position_m;
-            let shifted = Pose { root_m: pose.root_m + Vector3::new(east_m, north_m, 0.0), ..pose };
+            let drawn = rules.draw(draws.hops, draws.biases);
+            let shifted = shifted(at, &drawn);
             if (shifted.root_m - goal).xy().norm() <= goal_tolerance_m {
                 return Ok(());
             }
-            // Where it believes to be in the air or in rock, it sees where its feet stand.
-            let believed = self.planning.stand(shifted).unwrap_or_else(|_| at.clone());
+            let believed = self.believed(at, shifted);
             let aim = self.next(&believed, buffers).ok_or((LegsOutcome::Stuck, number))?;
             *at = self.hop(rules, at, &aim, &drawn).map_err(|outcome| (outcome, number))?;
         }
         Err((LegsOutcome::HopLimit, most))
+    }
+
+    /// The stance in which it believes to be; where that would be in the air or in rock, it sees where its feet stand.
+    pub(super) fn believed(&self, at: &Stance, shifted: Pose) -> Stance {
+        self.planning.stand(shifted).unwrap_or_else(|_| at.clone())
     }
 
     /// The hop to the stance with the fewest hops to the goal that one hop reaches.
@@ -260,7 +287,7 @@ impl LegsMission {
     }
 
     /// The hop along an arc from one stance to another.
-    fn aim(&self, [from, to]: [&Stance; 2], arc: &Arc) -> Option<Aim> {
+    pub(super) fn aim(&self, [from, to]: [&Stance; 2], arc: &Arc) -> Option<Aim> {
         let heading = self.planning.course(from, to)?.plane.heading;
         let landing = *to.pose();
         let ground_m = self.whole.ground_below_m(landing.root_m)?;
@@ -269,7 +296,7 @@ impl LegsMission {
     }
 
     /// Makes a hop with errors, and stands where it comes down.
-    fn hop(&self, rules: &Errors, from: &Stance, aim: &Aim, drawn: &HopErrors) -> Result<Stance, LegsOutcome> {
+    pub(super) fn hop(&self, rules: &Errors, from: &Stance, aim: &Aim, drawn: &HopErrors) -> Result<Stance, LegsOutcome> {
         let liftoff = rules.liftoff(&aim.command.liftoff, aim.command.speed_m_s, drawn);
         let velocity = velocity_m_s(&liftoff);
         if self.is_refused(from, velocity) {
@@ -343,6 +370,12 @@ impl LegsMission {
         }
         Err(LegsOutcome::Lost)
     }
+}
+
+/// The pose of a stance, moved by the error of where it believes to be.
+pub(super) fn shifted(at: &Stance, drawn: &HopErrors) -> Pose {
+    let [east_m, north_m] = drawn.position_m;
+    Pose { root_m: at.pose().root_m + Vector3::new(east_m, north_m, 0.0), ..*at.pose() }
 }
 
 fn velocity_m_s(liftoff: &LiftoffVelocity) -> Vector3<f64> {

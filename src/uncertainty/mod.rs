@@ -44,11 +44,13 @@
 
 mod density;
 mod drift;
+mod driving;
 mod exact_sum;
 pub mod experiments;
 mod hop_success;
 mod landing_tally;
 mod legs;
+mod legs_walk;
 mod mission;
 mod options;
 mod outcome;
@@ -75,6 +77,7 @@ pub use crate::{
 pub use density::{DensestCell, RestDensity};
 pub use drift::DriftCommand;
 pub use legs::{LegsMission, LegsOutcome, LegsSummary};
+pub use legs_walk::LegsWalking;
 pub use mission::{MeshAims, Mission};
 pub use options::{MissionPoint, Observer, SimulationError, TrialOptions};
 pub use outcome::{OutcomeCounts, Policy, TrialOutcome};

@@ -1,11 +1,13 @@
 //! Many trials of a mission that drives and hops.
 
 use nalgebra::Vector2;
-use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use rayon::prelude::*;
 
 use super::{
-    Policy, QuantileSketch, SimulationError, TravelToGo, TrialOptions, TrialOutcome, Wilson, simulation::command, trial::outcome_of,
+    Policy, QuantileSketch, SimulationError, TravelToGo, TrialOptions, TrialOutcome, Wilson,
+    driving::{DriveDraws, Driven},
+    simulation::command,
+    trial::outcome_of,
 };
 use crate::{
     ballistics::TakeoffChoice,
@@ -185,7 +187,7 @@ impl TravelMission {
             let starts: Vec<u64> = (done..end).step_by(usize::try_from(STRETCH).unwrap_or(usize::MAX)).collect();
             let stretch = |first: u64| {
                 let mut realized = self.whole.clone();
-                let mut draws = (TrialDraws::seeded(options.seed), ChaCha8Rng::seed_from_u64(options.seed));
+                let mut draws = (TrialDraws::seeded(options.seed), DriveDraws::seeded(options.seed));
                 let trials = first..end.min(first + STRETCH);
                 trials.map(|trial| self.tried(&rules, errors, (options, trial), &mut draws, &mut realized)).collect()
             };
@@ -207,16 +209,13 @@ impl TravelMission {
         rules: &Errors,
         errors: &Uncertainty,
         (options, trial): (&TrialOptions, u64),
-        (draws, wheels): &mut (TrialDraws, ChaCha8Rng),
+        (draws, wheels): &mut (TrialDraws, DriveDraws),
         realized: &mut DemGround,
     ) -> Tried {
-        /// A stream of its own: no trial has this number.
-        const WHEELS: u64 = 1 << 63;
         if let Some(realization) = rules.realization(draws, trial) {
             realized.realize(realization);
         }
-        wheels.set_stream(trial | WHEELS);
-        wheels.set_word_pos(0);
+        wheels.begin(trial);
         let start = self.moves.first().map_or(self.goal, TravelMove::from);
         let biases = rules.begin(draws, trial);
         let mut journey = Journey {
@@ -284,7 +283,7 @@ type EndedIn = Result<(), (TravelOutcome, usize)>;
 
 impl Journey<'_> {
     /// Makes the planned moves from wherever it is.
-    fn as_planned(&mut self, (draws, wheels): (&mut TrialDraws, &mut ChaCha8Rng), biases: &Biases) -> EndedIn {
+    fn as_planned(&mut self, (draws, wheels): (&mut TrialDraws, &mut DriveDraws), biases: &Biases) -> EndedIn {
         for (number, planned) in (1..).zip(&self.mission.moves) {
             let moved = match planned {
                 TravelMove::Drive { from, to } => {
@@ -303,7 +302,7 @@ impl Journey<'_> {
     /// Makes the planned moves where it believes to be at their beginnings, and else those by which least is left.
     fn replanning(
         &mut self,
-        (draws, wheels): (&mut TrialDraws, &mut ChaCha8Rng),
+        (draws, wheels): (&mut TrialDraws, &mut DriveDraws),
         biases: &Biases,
         goal_tolerance_m: f64,
     ) -> EndedIn {
@@ -344,26 +343,19 @@ impl Journey<'_> {
     ///
     /// # Returns
     /// Whether the wheels hold on the way; it stays where they do not.
-    fn drive(&mut self, along: Vector2<f64>, draws: &mut ChaCha8Rng) -> Result<bool, TravelOutcome> {
+    fn drive(&mut self, along: Vector2<f64>, draws: &mut DriveDraws) -> Result<bool, TravelOutcome> {
         self.settle();
-        let limits = self.mission.rover.limits();
-        let uniforms = [0; 3].map(|_| draws.random::<f64>());
-        let [heading, length] = self.errors.distribution.standard_pair([uniforms[0], uniforms[1]]);
-        let (sine, cosine) = libm::sincos(limits.heading_sigma.radians() * heading);
-        let turned = Vector2::new(along.x * cosine + along.y * sine, along.y * cosine - along.x * sine);
-        let target = self.at + turned * (1.0 + limits.length_sigma_fraction * length).max(0.0);
-        let places = [self.at, target].map(|at| self.mission.planning.position(at));
-        let [Some(from), Some(to)] = places else { return Ok(false) };
-        let Ok(leg) = self.drive.leg(&from, &to) else { return Ok(false) };
-        if uniforms[2] < 1.0 - libm::exp(-limits.failure_per_m * leg.length_m) {
-            return Err(TravelOutcome::DriveFailed);
-        }
-        if let Some(heading) = turned.try_normalize(0.0) {
+        let (at, leg, heading) = match draws.drive(&self.drive, self.errors.distribution, self.at, along) {
+            Driven::To { at, leg, heading } => (at, leg, heading),
+            Driven::Refused => return Ok(false),
+            Driven::Failed => return Err(TravelOutcome::DriveFailed),
+        };
+        if let Some(heading) = heading {
             let angle = self.heading.map_or(0.0, |before| libm::atan2(before.perp(&heading).abs(), before.dot(&heading)));
-            self.time_s += limits.turn_s_per_deg * angle.to_degrees();
+            self.time_s += self.mission.rover.limits().turn_s_per_deg * angle.to_degrees();
             self.heading = Some(heading);
         }
-        self.at = target;
+        self.at = at;
         self.time_s += leg.time_s;
         self.driven_m += leg.length_m;
         Ok(true)

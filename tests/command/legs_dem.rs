@@ -420,8 +420,7 @@ fn a_robot_that_walks_and_hops_states_both_and_is_checked_again() {
     // What is not answered says so.
     desk.write("result.json", document.to_string());
     for (words, what) in [
-        (&["simulate", "walk.toml"][..], "trials"),
-        (&["map", "ground.asc", "--scenario", "walk.toml", "--mobility", "m.tif"], "maps"),
+        (&["map", "ground.asc", "--scenario", "walk.toml", "--mobility", "m.tif"][..], "maps"),
         (&["trade", "walk.toml", "--vary", "robot.cone=kc,exact"], "trades"),
         (&["check", "result.json"], "checks of results"),
         (&["report", "result.json", "-o", "page.html"], "pages"),
@@ -431,4 +430,58 @@ fn a_robot_that_walks_and_hops_states_both_and_is_checked_again() {
     for file in ["m.tif", "page.html"] {
         assert!(!desk.path().join(file).exists(), "{file}");
     }
+}
+
+/// The share of trials that reached the goal, its 95 % interval, and how many ended in each other way.
+fn trials(document: &Value) -> (f64, [f64; 2], Vec<(String, u64)>) {
+    let record = &document["simulation"];
+    let interval = numbers(&record["success_ci95"]);
+    let outcomes = record["outcomes"].as_array().unwrap().iter();
+    let outcomes = outcomes.map(|row| (row["outcome"].as_str().unwrap().to_owned(), row["trials"].as_u64().unwrap()));
+    (record["success_rate"].as_f64().unwrap(), [interval[0], interval[1]], outcomes.collect())
+}
+
+#[test]
+fn trials_of_a_robot_that_walks_have_the_errors_of_its_walks() {
+    let (desk, _) = desk(false);
+    let walks = "[drive]\nspeed_m_s = 0.4\nslope_up_max_deg = 25\ntravel = \"drive\"\n[uncertainty]\ngoal_tolerance_m = 0.5\n";
+    desk.write("walk.toml", scenario(walks));
+    let of = |file: &str, more: &[&str]| {
+        let words = [&["simulate", file, "--set", "search.contacts_max=60"][..], more].concat();
+        desk.json(&words)
+    };
+    // Without errors every trial is the plan, by either policy.
+    for policy in ["open-loop", "replan"] {
+        let document = of("walk.toml", &["--policy", policy, "--trials", "5"]);
+        assert_eq!(trials(&document).0, 1.0, "{policy}: {}", document["simulation"]);
+    }
+    // A walk fails once in so many metres: e^(-length / distance) of the trials get through.
+    let length_m = of("walk.toml", &["--trials", "1"])["walk"]["totals"]["drive_length_m"].as_f64().unwrap();
+    let failing = of("walk.toml", &["--policy", "open-loop", "--trials", "1000", "--set", "drive.failure_per_m=0.05"]);
+    let (_, [low, high], outcomes) = trials(&failing);
+    let expected = (-0.05 * length_m).exp();
+    assert!(low < expected && expected < high && high - low < 0.07, "{expected} of {length_m} m: {low} to {high}");
+    assert!(outcomes.len() == 2 && outcomes[1].0 == "walk_failed", "{outcomes:?}");
+    // Walks that are too long or too short by 5 % miss a goal within 0.1 m far away; a robot that replans goes on until it is there.
+    let long = ["--trials", "60", "--set", "drive.length_sigma_fraction=0.05", "--set", "uncertainty.goal_tolerance_m=0.1"];
+    let by = |policy: &str| trials(&of("walk.toml", &[&["--policy", policy][..], &long].concat()));
+    let (missing, _, ways) = by("open-loop");
+    assert!(missing < 0.6 && ways.iter().any(|(way, _)| way == "missed" || way == "fell"), "{missing} {ways:?}");
+    let (replanned, _, ways) = by("replan");
+    assert!(replanned > missing + 0.2, "{replanned} {missing}: {ways:?}");
+    // The same for any number of threads, and in a mission that also hops.
+    let both = scenario(&format!("[hopper]\npreparation_time_s = 20\n{}\n", walks.replace("travel = \"drive\"\n", "")));
+    desk.write("both.toml", both.replace("contacts_max = 200", "contacts_max = 60"));
+    let both = ["--trials", "40", "--set", "uncertainty.takeoff_speed_sigma_fraction=0.02", "--set", "drive.heading_sigma_deg=2"];
+    let one = of("both.toml", &[&both[..], &["--threads", "1", "--compare"]].concat());
+    let two = of("both.toml", &[&both[..], &["--threads", "2", "--compare"]].concat());
+    assert_eq!(one["compare"], two["compare"]);
+    let rates: Vec<f64> =
+        one["compare"].as_array().unwrap().iter().map(|record| record["success_rate"].as_f64().unwrap()).collect();
+    assert!(rates.len() == 2 && rates[1] >= rates[0], "{rates:?}");
+    let stated = one["warnings"].to_string();
+    assert!(stated.contains("at the end of a walk in the planned orientation"), "{stated}");
+    // A result as a whole has both: its path and its trials.
+    let ran = desk.run(&["run", "both.toml", "--output", "folder"]);
+    assert!(ran.status <= 1 && ran.stdout.contains("stand at the goal"), "{ran:?}");
 }

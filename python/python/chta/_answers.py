@@ -108,6 +108,16 @@ class Answer:
 class _WithPath(Answer):
     """An answer with hops."""
 
+    def __init__(self, reply: _chta.Reply) -> None:
+        super().__init__(reply)
+        self._ground = reply.ground().reshape(-1, 2)
+
+    @property
+    def ground(self) -> NDArray[np.float64] | None:
+        """The vertices of the ground along the path, ``(n, 2)``: distance and elevation, m. ``None`` where the path is of a mesh, of legs, of
+        wheels or over several targets, and of trials."""
+        return self._ground if len(self._ground) else None
+
     @property
     def rows(self) -> list[dict[str, Any]]:
         """The hops, and legs of a drive, as the document has them."""
@@ -153,23 +163,28 @@ class _WithPath(Answer):
         return gpd.GeoDataFrame(flat, geometry=lines, crs=crs["code"] or crs["proj"] if crs else None)
 
     def plot(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.axes.Axes:
-        """Draws the arcs of the hops over the distance along the path (extra ``plot``)."""
+        """Draws the arcs of the hops over the distance along the path, and the `ground` where it is known (extra ``plot``)."""
         axes = _axes(ax)
-        along = 0.0
+        if self.ground is not None:
+            distance, elevation = self.ground.T
+            axes.plot(distance, elevation, color="#444444", linewidth=1, label="ground")
+        # The distance of a row is that along the path, or along the part of the path to one of several targets.
+        before, end, label = 0.0, 0.0, "hop"
         for row in self.rows:
             if "takeoff_speed_m_s" not in row:
                 continue
-            run = abs(row["landing_x_m"] - row["takeoff_x_m"])
-            # A route of several slices begins each at 0; a chain goes on.
-            goes_on = self.document().get("start_x_m") is not None
-            start = row["takeoff_x_m"] if goes_on else along
-            sign = -1.0 if row["direction"] == "reverse" and goes_on else 1.0
-            slope, total = np.tan(np.radians(row["takeoff_angle_deg"])), max(run, 1e-12)
-            t = np.linspace(0.0, 1.0, 50)
-            rise = row["landing_z_m"] - row["takeoff_z_m"]
-            z = row["takeoff_z_m"] + slope * total * t + (rise - slope * total) * t**2
-            axes.plot(start + sign * run * t, z, color="#0072B2")
-            along += run
+            takeoff, landing = row["takeoff_x_m"], row["landing_x_m"]
+            if self.ground is None and takeoff < end:
+                before += end
+            end = landing
+            share = np.linspace(0.0, 1.0, 50)
+            rise, run = row["landing_z_m"] - row["takeoff_z_m"], abs(landing - takeoff)
+            climb = np.tan(np.radians(row["takeoff_angle_deg"])) * run
+            height = row["takeoff_z_m"] + climb * share + (rise - climb) * share**2
+            axes.plot(before + takeoff + (landing - takeoff) * share, height, color="#0072B2", label=label)
+            label = "_nolegend_"
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend()
         axes.set_xlabel("distance along the path (m)")
         axes.set_ylabel("elevation (m)")
         return axes
@@ -345,6 +360,10 @@ class Comparison(Answer):
         return pd.json_normalize(self.rows)
 
 
+LABELLED = 10
+"""The landing sites whose ranks a picture shows."""
+
+
 class Sites(Answer):
     """Landing sites ranked."""
 
@@ -361,12 +380,15 @@ class Sites(Answer):
         return table
 
     def plot(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.axes.Axes:
-        """Draws the candidates on the map, by the share of the nodes that each reaches (extra ``plot``)."""
+        """Draws the candidates on the map, by the share of the nodes that each reaches, the best with their ranks (extra ``plot``)."""
         axes = _axes(ax)
         rows = self.rows
         shown = axes.scatter(
             [row["x_m"] for row in rows], [row["y_m"] for row in rows], c=[row["reachable_share"] for row in rows], vmin=0, vmax=1
         )
+        for rank, row in enumerate(rows[:LABELLED], start=1):
+            axes.annotate(str(rank), (row["x_m"], row["y_m"]), xytext=(5, 5), textcoords="offset points")
+        axes.margins(0.1)
         axes.figure.colorbar(shown, ax=axes, label="share of the nodes reached")
         axes.set_aspect("equal")
         axes.set_xlabel("x (m)")

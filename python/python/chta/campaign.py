@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import collections
 import hashlib
 import json
 import os
@@ -47,6 +48,12 @@ class Campaign:
         """The documents; ``None`` where a case has an error."""
         return [None if row["document"] is None else json.loads(row["document"]) for row in self.rows]
 
+    @property
+    def warnings(self) -> dict[str, int]:
+        """The warnings of all answers, such as of a key without effect, and to how many cases each applies; the most frequent first."""
+        said = collections.Counter(warning for document in self.documents() if document for warning in document["warnings"])
+        return dict(said.most_common())
+
     def to_frame(self) -> pandas.DataFrame:
         """One row a case: the keys that were set and the answer, without the document (extra ``pandas``)."""
         import pandas as pd
@@ -62,10 +69,31 @@ def key_of(scenario: Scenario, question: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def answers(scenario: Scenario, cases: Sequence[Mapping[str, Any]], first: int, question: str, threads: int | None) -> list[Row]:
-    """The rows of some cases, of which the first has this number: one task of a cluster. Terrain that they have in common is read once."""
-    scenario = scenario._sharing()
-    return [_answer(scenario, case, first + number, question, threads) for number, case in enumerate(cases)]
+def answers(
+    scenario: Scenario,
+    cases: Sequence[Mapping[str, Any]],
+    first: int,
+    question: str,
+    threads: int | None,
+    content: Sequence[str] | None = None,
+) -> list[Row]:
+    """The rows of some cases, of which the first has this number: one task of a cluster. Terrain that they have in common is read once; with
+    the checksums of the scenario's files, once for all tasks of a worker."""
+    shared = scenario._sharing() if content is None else _shared(scenario, tuple(content))
+    return [_answer(shared, case, first + number, question, threads) for number, case in enumerate(cases)]
+
+
+_kept: tuple[tuple[Any, ...], Scenario] | None = None
+"""The last scenario of the tasks of this worker: with terrain that was read."""
+
+
+def _shared(scenario: Scenario, content: tuple[str, ...]) -> Scenario:
+    """A scenario whose files have these checksums, with the terrain of the task before if that was of the same one."""
+    global _kept
+    name = (*scenario._source, json.dumps(scenario.tables(), sort_keys=True), os.getcwd(), content)
+    if _kept is None or _kept[0] != name:
+        _kept = (name, scenario._sharing())
+    return _kept[1]
 
 
 def _answer(scenario: Scenario, case: Mapping[str, Any], number: int, question: str, threads: int | None) -> Row:
@@ -118,7 +146,7 @@ def run(
             wanted.append((first, part, name))
         else:
             rows[first] = kept
-    for first, name, done in _done(opened, wanted, client, question, threads):
+    for first, name, done in _done(opened, wanted, client, (question, threads, _content(opened))):
         rows[first] = done
         if store is not None:
             store.write(name, done)
@@ -206,20 +234,19 @@ def _done(
     scenario: Scenario,
     wanted: list[tuple[int, Sequence[Mapping[str, Any]], str]],
     client: distributed.Client | None,
-    question: str,
-    threads: int | None,
+    asked: tuple[str, int | None, list[str] | None],
 ) -> Iterator[tuple[int, str, list[Row]]]:
     """The batches as they are done."""
     if client is None:
         for first, part, name in wanted:
-            yield first, name, answers(scenario, part, first, question, threads)
+            yield first, name, answers(scenario, part, first, *asked)
         return
     from distributed import as_completed
 
     of_task = {}
     for first, part, name in wanted:
         # A task is harmless to repeat, so a dying worker is no reason to give up on it.
-        task = client.submit(answers, scenario, part, first, question, threads, key=f"chta-{name}", retries=10, pure=True)
+        task = client.submit(answers, scenario, part, first, *asked, key=f"chta-{name}", retries=10, pure=True)
         of_task[task] = (first, name)
     for task in as_completed(list(of_task)):
         first, name = of_task.pop(task)

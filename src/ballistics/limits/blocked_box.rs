@@ -31,8 +31,8 @@ const EDGES: [[usize; 2]; 12] = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3],
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlownBox {
     corners: [Vector3<f64>; 8],
-    /// How far its corners lie from the plane to the right (negative) and to the left, m.
-    left_m: [f64; 2],
+    /// The least and the greatest coordinates of its corners, m.
+    bounds_m: [Vector3<f64>; 2],
 }
 
 impl FlownBox {
@@ -40,15 +40,21 @@ impl FlownBox {
     pub fn new(middle: Vector3<f64>, half_edges: [Vector3<f64>; 3]) -> Self {
         let signed = |corner: usize, axis: usize| if corner >> axis & 1 == 0 { -half_edges[axis] } else { half_edges[axis] };
         let corners = std::array::from_fn(|corner| middle + signed(corner, 0) + signed(corner, 1) + signed(corner, 2));
-        let left_m = corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[right, left], corner: &Vector3<f64>| {
-            [right.min(corner.y), left.max(corner.y)]
-        });
-        Self { corners, left_m }
+        let around = [f64::INFINITY, f64::NEG_INFINITY].map(Vector3::repeat);
+        let bounds_m = corners
+            .iter()
+            .fold(around, |[low, high]: [Vector3<f64>; 2], corner: &Vector3<f64>| [low.inf(corner), high.sup(corner)]);
+        Self { corners, bounds_m }
     }
 
     /// Its corners.
     pub const fn corners(&self) -> &[Vector3<f64>; 8] {
         &self.corners
+    }
+
+    /// The least and the greatest coordinates of its corners, m.
+    pub const fn bounds_m(&self) -> [Vector3<f64>; 2] {
+        self.bounds_m
     }
 }
 
@@ -112,7 +118,8 @@ pub type BoxBorder = [ChainPoint; HULL_POINTS + 1];
 fn crossings(triangle: &[Vector3<f64>; 3], flown: &FlownBox, mut visit: impl FnMut([f64; 2], usize)) -> usize {
     let left = triangle.map(|corner| corner.y);
     let [rightmost, leftmost] = [left[0].min(left[1]).min(left[2]), left[0].max(left[1]).max(left[2])];
-    if rightmost > flown.left_m[1] || leftmost < flown.left_m[0] {
+    let [low, high] = flown.bounds_m;
+    if rightmost > high.y || leftmost < low.y {
         return 0;
     }
     let mut count = 0;

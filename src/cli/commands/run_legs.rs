@@ -20,7 +20,7 @@ pub(super) fn run(args: &RunArgs, input: &MeshPlanInput) -> Result<Answer, Failu
     let (answer, crs, mut warnings) = (routed.answer.clone(), routed.crs(), routed.warnings.clone());
     folder.plan_of_legs(&routed, input)?;
     let mut text = legs_plan_text(&answer);
-    if input.scenario.uncertainty.is_some() && routed.path.is_some() && answer.walk.is_none() {
+    if input.scenario.uncertainty.is_some() && routed.path.is_some() {
         let simulated = simulate_legs(routed, &input.scenario, &SimulateOptions::default(), &progress)
             .map_err(|error| Failure::about(&input.mesh, &error))?;
         folder.trials_of_legs(&simulated, input)?;

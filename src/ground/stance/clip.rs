@@ -11,6 +11,9 @@ use crate::world::{HalfSpace, Limb, Shell, Workspace};
 /// The greatest side of a cell, as a share of the greater radius of a shell.
 const CELL: f64 = 0.125;
 
+/// The room of a ball for rounding, as a share of the coordinates that it holds.
+const ROUNDING: f64 = 1e-12;
+
 /// A part of a triangle within reach: where it is, and how large.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Piece {
@@ -25,15 +28,22 @@ pub(super) struct Piece {
 pub(super) struct Clipper {
     polygon: Vec<Point3<f64>>,
     next: Vec<Point3<f64>>,
+    /// The half-space that left nothing of the last triangle, which is likely to do so again.
+    emptied_by: usize,
 }
 
 impl Clipper {
     /// Visits the parts of a triangle, in the trunk frame, that the foot of a limb reaches.
     pub(super) fn pieces(&mut self, limb: &Limb, triangle: &[Point3<f64>; 3], mut visit: impl FnMut(Piece)) {
+        let [a, b, c] = triangle;
+        let around = [a.inf(b).inf(c), a.sup(b).sup(c)];
+        if !meet(around, limb.bounds()) {
+            return;
+        }
         match &limb.workspace {
             Workspace::Convex(convex) => {
                 self.start(triangle);
-                if self.clip(convex.half_spaces())
+                if self.clip(convex.half_spaces(), around)
                     && let Some(piece) = middle_of(&self.polygon)
                 {
                     visit(piece);
@@ -41,7 +51,7 @@ impl Clipper {
             }
             Workspace::Shell(shell) if shell.radius_max_m() > 0.0 => {
                 self.start(triangle);
-                if self.clip(&sides_of(limb.bounds())) {
+                if self.clip(&sides_of(limb.bounds()), around) {
                     let [first, rest @ ..] = &self.polygon[..] else { return };
                     for pair in rest.windows(2) {
                         cells([*first, pair[0], pair[1]], (shell, &limb.hip_m), &mut visit);
@@ -58,13 +68,25 @@ impl Clipper {
         self.polygon.extend(triangle);
     }
 
-    /// Clips the polygon to an intersection of half-spaces; whether anything is left.
-    fn clip(&mut self, sides: &[HalfSpace]) -> bool {
-        for side in sides {
+    /// Clips the polygon, which lies within bounds, to an intersection of half-spaces; whether anything is left.
+    ///
+    /// A ball about the bounds decides about most half-spaces, of which the workspace of a file has some two hundred.
+    fn clip(&mut self, sides: &[HalfSpace], [low, high]: [Point3<f64>; 2]) -> bool {
+        let middle = nalgebra::center(&low, &high);
+        let radius_m = 0.5 * (high - low).norm() + ROUNDING * (low.coords.amax() + high.coords.amax());
+        if sides.get(self.emptied_by).is_some_and(|side| self.polygon.iter().all(|corner| side.outside_m(corner) > 0.0)) {
+            return false;
+        }
+        for (number, side) in sides.iter().enumerate() {
+            let middle_out_m = side.outside_m(&middle);
+            if middle_out_m < -radius_m {
+                continue;
+            }
             let outside = self.polygon.iter().map(|corner| side.outside_m(corner));
             let (mut any_in, mut any_out) = (false, false);
             outside.for_each(|out_m| if out_m <= 0.0 { any_in = true } else { any_out = true });
             if !any_in {
+                self.emptied_by = number;
                 return false;
             }
             if !any_out {
@@ -85,6 +107,11 @@ impl Clipper {
         }
         self.polygon.len() > 2
     }
+}
+
+/// Whether two boxes meet.
+fn meet([low, high]: [Point3<f64>; 2], [other_low, other_high]: [Point3<f64>; 2]) -> bool {
+    (0..3).all(|axis| low[axis] <= other_high[axis] && other_low[axis] <= high[axis])
 }
 
 /// The middle and the area of a plane polygon; `None` for one without area.
@@ -130,4 +157,64 @@ fn sides_of([low, high]: [Point3<f64>; 2]) -> [HalfSpace; 6] {
         let (sign, offset_m) = if side % 2 == 0 { (1.0, high[axis]) } else { (-1.0, -low[axis]) };
         HalfSpace { normal: nalgebra::Unit::new_unchecked(Vector3::ith(axis, sign)), offset_m }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its workspaces should stop")]
+
+    use super::*;
+    use crate::{draw::Draw, world::ConvexWorkspace};
+
+    /// The corners of a triangle that lie in all half-spaces, one half-space after another.
+    fn plainly(triangle: &[Point3<f64>; 3], sides: &[HalfSpace]) -> Vec<Point3<f64>> {
+        sides.iter().fold(triangle.to_vec(), |polygon, side| {
+            let mut left = Vec::new();
+            for (i, from) in polygon.iter().enumerate() {
+                let to = &polygon[(i + 1) % polygon.len()];
+                let (here, there) = (side.outside_m(from), side.outside_m(to));
+                left.extend((here <= 0.0).then_some(*from));
+                if (here <= 0.0) != (there <= 0.0) {
+                    left.push(from + (to - from) * (here / (here - there)));
+                }
+            }
+            left
+        })
+    }
+
+    #[test]
+    fn shortcuts_leave_the_same_part_of_every_triangle() {
+        let draw = &mut Draw::seeded(21);
+        let mut clipper = Clipper::default();
+        let (mut parts, mut wholes, mut nothings) = (0, 0, 0);
+        for case in 0..400 {
+            let points: Vec<Point3<f64>> =
+                (0..4 + draw.below(120)).map(|_| Point3::from(Vector3::from_fn(|_, _| draw.uniform(-0.5, 0.5)))).collect();
+            let Ok(convex) = ConvexWorkspace::hull_of(&points) else { continue };
+            let limb = Limb::new("leg", Point3::origin(), Workspace::Convex(convex.clone()));
+            for _ in 0..50 {
+                let middle = Point3::from(Vector3::from_fn(|_, _| draw.uniform(-0.8, 0.8)));
+                let size_m = [1e-3, 0.1, 1.0, 20.0][draw.below(4)];
+                let triangle = [(); 3].map(|()| middle + Vector3::from_fn(|_, _| draw.uniform(-size_m, size_m)));
+                let mut found = None;
+                clipper.pieces(&limb, &triangle, |piece| found = Some(piece));
+                let plain = plainly(&triangle, convex.half_spaces());
+                let expected = if plain.len() > 2 { middle_of(&plain) } else { None };
+                let area_m2 = |piece: Option<Piece>| piece.map_or(0.0, |piece| piece.area_m2);
+                let whole_m2 = 0.5 * (triangle[1] - triangle[0]).cross(&(triangle[2] - triangle[0])).norm();
+                assert!((area_m2(found) - area_m2(expected)).abs() <= 1e-9 * whole_m2, "case {case}: {found:?} {expected:?}");
+                if let (Some(found), Some(expected)) = (found, expected)
+                    && expected.area_m2 > 1e-6 * whole_m2
+                {
+                    assert!((found.middle - expected.middle).norm() <= 1e-9 * size_m.max(1.0), "case {case}");
+                }
+                match found {
+                    None => nothings += 1,
+                    Some(piece) if piece.area_m2 >= whole_m2 * (1.0 - 1e-9) => wholes += 1,
+                    Some(_) => parts += 1,
+                }
+            }
+        }
+        assert!(parts > 1_000 && wholes > 500 && nothings > 1_000, "{parts} {wholes} {nothings}");
+    }
 }

@@ -117,18 +117,26 @@ struct Group {
 impl StanceGround {
     /// Where the feet of a robot in a pose stand, and what became of every limb.
     pub fn footholds(&self, pose: &Pose) -> (Vec<Foothold>, Vec<LimbOutcome>) {
+        self.footholds_of(pose, 0)
+    }
+
+    /// The same, until so many feet cannot stand any more: limbs after that are not looked at.
+    pub(super) fn footholds_of(&self, pose: &Pose, least: usize) -> (Vec<Foothold>, Vec<LimbOutcome>) {
         let mut clipper = Clipper::default();
-        let mut found: Vec<Foothold> = Vec::new();
-        let limbs = self.robot().limbs().iter().enumerate();
-        let outcomes = limbs
-            .map(|(number, limb)| match self.foothold(pose, (number, limb), &found, &mut clipper) {
+        let (mut found, mut outcomes) = (Vec::new(), Vec::new());
+        let limbs = self.robot().limbs();
+        for (number, limb) in limbs.iter().enumerate() {
+            if found.len() + limbs.len() - number < least {
+                break;
+            }
+            outcomes.push(match self.foothold(pose, (number, limb), &found, &mut clipper) {
                 Ok(foothold) => {
                     found.push(foothold);
                     LimbOutcome::Stands
                 }
                 Err(outcome) => outcome,
-            })
-            .collect();
+            });
+        }
         (found, outcomes)
     }
 

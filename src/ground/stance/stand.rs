@@ -74,6 +74,11 @@ impl StanceGround {
     /// # Errors
     /// [`NoStance`]: the first reason in the order of its variants.
     pub fn stand(&self, pose: Pose) -> Result<Stance, NoStance> {
+        self.stand_on(pose, 0)
+    }
+
+    /// The stance in a pose, with limbs looked at until so many feet cannot stand any more.
+    fn stand_on(&self, pose: Pose, least: usize) -> Result<Stance, NoStance> {
         if self.is_point() {
             let contact = self.mesh().contact(pose.root_m).map_err(NoStance::NoContact)?;
             return Ok(self.on_point(contact, pose));
@@ -84,7 +89,7 @@ impl StanceGround {
         if let Some(hit) = self.trunk_hit(&pose) {
             return Err(NoStance::Trunk(hit));
         }
-        let (footholds, outcomes) = self.footholds(&pose);
+        let (footholds, outcomes) = self.footholds_of(&pose, least);
         let needed = self.robot().contacts_min();
         if footholds.len() < needed {
             let names = self.robot().limbs().iter().map(|limb| limb.name.clone());
@@ -112,8 +117,32 @@ impl StanceGround {
     /// # Errors
     /// As [`stand`](Self::stand).
     pub fn stand_over(&self, at: &MeshContact, up: Vector3<f64>, heading: Vector2<f64>, height_m: f64) -> Result<Stance, NoStance> {
+        self.stand_over_on((at, up), (heading, height_m), 0)
+    }
+
+    /// The same for one of many poses: where too few feet stand, the limbs after those that decided it are not looked at, and the reason does
+    /// not name them.
+    ///
+    /// # Errors
+    /// As [`stand`](Self::stand).
+    pub fn try_to_stand_over(
+        &self,
+        at: &MeshContact,
+        up: Vector3<f64>,
+        heading: Vector2<f64>,
+        height_m: f64,
+    ) -> Result<Stance, NoStance> {
+        self.stand_over_on((at, up), (heading, height_m), self.robot().contacts_min())
+    }
+
+    fn stand_over_on(
+        &self,
+        (at, up): (&MeshContact, Vector3<f64>),
+        (heading, height_m): (Vector2<f64>, f64),
+        least: usize,
+    ) -> Result<Stance, NoStance> {
         let pose = Pose::facing(at.point_m() + up * height_m, up, heading);
-        if self.is_point() { Ok(self.on_point(at.clone(), pose)) } else { self.stand(pose) }
+        if self.is_point() { Ok(self.on_point(at.clone(), pose)) } else { self.stand_on(pose, least) }
     }
 
     /// What a stance allows a take-off or a landing along a heading; empty slopes where it allows none.

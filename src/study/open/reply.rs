@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 #[cfg(feature = "plot")]
 use crate::figure::{FigureError, Picture};
-use crate::report::DocumentKind;
+use crate::{quantity::ChainPoint, report::DocumentKind};
 
 /// How a picture is drawn, when it is wanted.
 #[cfg(feature = "plot")]
@@ -21,6 +21,8 @@ pub struct Reply {
     pub json: String,
     /// Whether the answer is yes: a path exists, a hop is feasible, a success is shown.
     pub holds: bool,
+    /// The ground along the path, from the distance at which its hops are counted; empty where there is none.
+    pub ground: Vec<ChainPoint>,
     #[cfg(feature = "plot")]
     draw: Option<Draw>,
 }
@@ -32,9 +34,15 @@ impl Reply {
             kind,
             json,
             holds,
+            ground: Vec::new(),
             #[cfg(feature = "plot")]
             draw: None,
         }
+    }
+
+    /// The same over the ground of a path.
+    pub(super) fn over(self, ground: &[ChainPoint]) -> Self {
+        Self { ground: ground.to_vec(), ..self }
     }
 
     /// The same with its picture.

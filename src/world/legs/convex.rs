@@ -33,6 +33,7 @@ pub struct ConvexWorkspace {
     half_spaces: Vec<HalfSpace>,
     vertices: Vec<Point3<f64>>,
     triangles: Vec<[usize; 3]>,
+    bounds: TrunkBounds,
     volume_m3: f64,
     mesh_share: f64,
     open_edges: usize,
@@ -94,7 +95,7 @@ impl ConvexWorkspace {
             return Err(flat);
         }
         let volume_m3 = volume(&vertices, &triangles, &vertices[0]);
-        Ok(Self { half_spaces, vertices, triangles, volume_m3, mesh_share: 1.0, open_edges: 0 })
+        Ok(Self { half_spaces, vertices, triangles, bounds, volume_m3, mesh_share: 1.0, open_edges: 0 })
     }
 
     /// The convex hull of a mesh, which remembers how much of it the mesh encloses.
@@ -156,8 +157,9 @@ impl ConvexWorkspace {
     }
 
     /// The smallest axis-parallel box around it.
-    pub fn bounds(&self) -> TrunkBounds {
-        bounds_of(&self.vertices)
+    #[inline]
+    pub const fn bounds(&self) -> TrunkBounds {
+        self.bounds
     }
 
     /// The distance of its farthest point from a point, m.

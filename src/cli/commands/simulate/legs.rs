@@ -30,7 +30,6 @@ pub(super) fn run(args: &SimulateArgs, input: &MeshPlanInput) -> Result<Answer, 
     let progress = Progress::new(args.common.quiet);
     let question = LegsRouteQuestion { scenario: &input.scenario, base: &input.base };
     let about = |error| Failure::about(&input.mesh, &error);
-    let question = question.of_hops_alone("trials").map_err(about)?;
     let routed = legs_route(question, &progress).map_err(about)?;
     let simulated =
         simulate_legs(routed, &input.scenario, &args.options(), &progress).map_err(|error| Failure::about(&input.mesh, &error))?;

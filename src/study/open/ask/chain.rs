@@ -44,7 +44,8 @@ impl Draft {
         let options = PlanOptions { proof: asked.proof, verify: asked.verify, estimate: true, front: None };
         let planned = plan(&case, options, progress)?;
         let json = record.document(DocumentKind::Plan, &planned.warnings, &planned.answer).to_json()?;
-        let reply = Reply::new(DocumentKind::Plan, json, planned.is_traversable());
+        let reply =
+            Reply::new(DocumentKind::Plan, json, planned.is_traversable()).over(planned.case.prepared.chain.geometry().vertices());
         #[cfg(feature = "plot")]
         let reply = reply.drawn(move || Some(planned.picture()));
         Ok(reply)

@@ -65,7 +65,8 @@ impl Draft {
         let PlanAsked { proof, verify, front, .. } = *asked;
         let planned = plan(&open.case, PlanOptions { proof, verify, estimate: true, front }, progress)?;
         let json = open.document(DocumentKind::Plan, &planned.warnings, &planned.answer)?;
-        let reply = Reply::new(DocumentKind::Plan, json, planned.is_traversable());
+        let reply =
+            Reply::new(DocumentKind::Plan, json, planned.is_traversable()).over(planned.case.prepared.chain.geometry().vertices());
         #[cfg(feature = "plot")]
         let reply = reply.drawn(move || Some(planned.picture()));
         Ok(reply)

@@ -78,7 +78,7 @@ impl Draft {
             return over_mesh(open, of_result.as_ref(), options, progress);
         }
         refuse(&[(options.tally, "a tally")], "a tally holds the landings of a point, and this robot has legs")?;
-        let question = LegsRouteQuestion { scenario: &open.scenario, base: &open.base }.of_hops_alone("trials")?;
+        let question = LegsRouteQuestion { scenario: &open.scenario, base: &open.base };
         let routed = legs_route(question, progress)?;
         let flown = simulate_legs(routed, &open.scenario, options, progress)?;
         let (kind, answer) = (DocumentKind::SimulateLegs, &flown.answer);
@@ -133,7 +133,8 @@ impl Draft {
         let asked = PlanOptions { verify: true, estimate: true, ..PlanOptions::default() };
         let planned = Arc::new(plan(&open.case, asked, progress)?);
         let json = open.document(DocumentKind::Run, &planned.warnings, &planned.answer)?;
-        let reply = Reply::new(DocumentKind::Run, json, planned.is_traversable());
+        let reply =
+            Reply::new(DocumentKind::Run, json, planned.is_traversable()).over(planned.case.prepared.chain.geometry().vertices());
         #[cfg(feature = "plot")]
         let reply = reply.drawn({
             let planned = Arc::clone(&planned);
@@ -227,7 +228,7 @@ fn run_of_legs(open: &OpenFacets, progress: &dyn Progress) -> Result<Ran, AskErr
     let routed = legs_route(LegsRouteQuestion { scenario: &open.scenario, base: &open.base }, progress)?;
     let (answer, crs, mut warnings) = (routed.answer.clone(), routed.crs(), routed.warnings.clone());
     let (holds, mut trials) = (answer.plan.is_traversable(), None);
-    if open.scenario.uncertainty.is_some() && routed.path.is_some() && answer.walk.is_none() {
+    if open.scenario.uncertainty.is_some() && routed.path.is_some() {
         let flown = simulate_legs(routed, &open.scenario, &SimulateOptions::default(), progress)?;
         warnings.clone_from(&flown.warnings);
         let kind = DocumentKind::SimulateLegs;
