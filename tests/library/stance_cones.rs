@@ -548,4 +548,18 @@ mod errata {
             assert!(!ConeSum::new(&[walls[one], walls[other]]).is_everything());
         }
     }
+
+    /// Section 4 draws the landing within X_max = v^2 / g, which needs a take-off at 45 degrees: friction of at least 1.
+    #[test]
+    fn the_greatest_reach_on_level_ground_needs_a_friction_of_one() {
+        let reach = |mu: f64| {
+            let steepest_use = ConeKind::Kc.cone(&[contact(Vector3::z(), mu)]).takeoff_slopes(Vector2::x()).lower.max(1.0);
+            // The speed of the arc over X = 1 m for g = 1 m/s^2; X_max goes with its square.
+            let arc = chta::ballistics::Arc::new(chta::ballistics::LineOfSight::new(1.0, 0.0), steepest_use, 1.0);
+            1.0 / arc.takeoff_speed_m_s().powi(2)
+        };
+        assert!((reach(1.0) - 1.0).abs() < 1e-12 && (reach(1.3) - 1.0).abs() < 1e-12);
+        // s = 1 / 0.6: 2 s / (1 + s^2) = 0.882.
+        assert!((reach(0.6) - 0.882_352_941_176_470_6).abs() < 1e-12, "{}", reach(0.6));
+    }
 }
