@@ -9,7 +9,7 @@ use crate::{
     ground::{ChainGround, ChainPosition, DemGround, Surface, heading_of},
     hop::{HopMargins, HopTest, SegmentHops, Split},
     planner::{Amount, Amounts, LayerTotals},
-    quantity::{Angle, AngleInterval, SlopeInterval},
+    quantity::{Angle, AngleInterval, SlopeInterval, total},
     terrain::MapLayers,
     world::{Contact, Direction, Hopper, Limit},
 };
@@ -136,7 +136,7 @@ impl HopPath {
     #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
     pub fn amounts(&self) -> Amounts {
         let totals = &self.totals;
-        let sum = |of: &dyn Fn(&Hop) -> f64| self.hops.iter().map(of).sum::<f64>();
+        let sum = |of: &dyn Fn(&Hop) -> f64| total(self.hops.iter().map(of));
         // The length of an arc does not depend on gravity.
         let arc = |hop: &Hop| Arc::new(hop.line_of_sight(), hop.takeoff_angle.slope() - hop.line_of_sight().slope(), 1.0);
         Amounts::NONE
@@ -272,7 +272,7 @@ fn roll_out(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc) -> Op
 
 /// The totals of hops.
 fn totals(hops: &[Hop], hopper: &Hopper) -> Totals {
-    let sum = |of: fn(&Hop) -> f64| hops.iter().map(of).sum::<f64>();
+    let sum = |of: fn(&Hop) -> f64| total(hops.iter().map(of));
     let flight_time_s = sum(|h| h.flight_time_s);
     let energy_j_kg = sum(|h| 0.5 * h.takeoff_speed_m_s * h.takeoff_speed_m_s);
     let limits = hopper.limits();
@@ -282,7 +282,7 @@ fn totals(hops: &[Hop], hopper: &Hopper) -> Totals {
         let used_kg = propellant_kg(mass_kg, delta_v_m_s, isp_s);
         Propellant { used_kg, mass_end_kg: mass_kg - used_kg }
     });
-    let bounce_time_s = limits.restitution.map(|_| hops.iter().filter_map(|hop| Some(hop.roll_out?.time_s)).sum::<f64>());
+    let bounce_time_s = limits.restitution.map(|_| total(hops.iter().filter_map(|hop| Some(hop.roll_out?.time_s))));
     let on_the_ground_s = match (limits.ground_time_s(hops.len()), bounce_time_s) {
         (None, bounces_s) => bounces_s,
         (Some(ground_time_s), bounces_s) => Some(ground_time_s + bounces_s.unwrap_or(0.0)),

@@ -14,6 +14,7 @@ mod number_text;
 mod points;
 mod quadratic;
 mod slope;
+mod total;
 mod unit;
 
 pub use angle::{Angle, AngleInterval};
@@ -30,4 +31,5 @@ pub(crate) use points::part_between;
 pub use points::{ChainPoint, MapPoint};
 pub use quadratic::{MonicQuadratic, Roots};
 pub use slope::SlopeInterval;
+pub(crate) use total::total;
 pub(crate) use unit::{Measure, is_metre, metres_or_kilometres, metres_per, split_unit, unit_named};

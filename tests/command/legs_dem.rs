@@ -417,6 +417,13 @@ fn a_robot_that_walks_and_hops_states_both_and_is_checked_again() {
     assert!(hops.get("walk").is_none());
     let by_walking = desk.run(&["plan", "walk.toml", "--set", "search.contacts_max=40", "--set", "drive.travel=drive"]);
     assert!(by_walking.stdout.contains("and 0 hops") || by_walking.status == 1, "{by_walking:?}");
+    // Sums of nothing, of hops or of walks, are 0 and not -0.
+    let short = ["plan", "walk.toml", "--set", "hopper.preparation_time_s=0", "--set", "search.contacts_max=60"];
+    for words in [&["plan", "walk.toml", "--set", "search.contacts_max=40", "--set", "drive.travel=drive"][..], &short] {
+        assert!(!desk.run(words).stdout.contains("-0.000"), "{words:?}");
+        let document = desk.run(&[words, &["--format", "json"]].concat()).stdout;
+        assert!(document.contains("\"totals\"") && !document.contains(" -0.0,") && !document.contains(" -0.0\n"), "{words:?}");
+    }
     // What is not answered says so.
     desk.write("result.json", document.to_string());
     for (words, what) in [

@@ -157,14 +157,15 @@ fn toml() -> impl Strategy<Value = String> {
             // Both or neither; a heading error only on a raster. An objective or a budget of totals excludes an effort, a weighing of risk,
             // a budget of success, and bounces beside a mission time.
             ("uncertainty", "height_sigma_m" | "height_correlation_m") | ("search", "risk") | ("contact", _) => degrees,
-            // A heading that is not controlled goes with few other keys: a test of its own.
-            ("uncertainty", "heading" | "takeoff_speed_m_s" | "takeoff_angle_deg") => false,
             ("uncertainty", "heading_sigma_deg" | "heading_bias_sigma_deg") => ground < 2,
             // A budget of success without errors, an energy without a mass, and shares that leave too little for other keys, are refused.
             ("budget", "estimated_success_min") => degrees && !points,
             ("search", "objective") => points && !degrees && friction,
             ("search", "effort") => !(points && !degrees && friction),
-            ("budget", "energy_max_j") | ("search", "risk_extra_hops_max") => false,
+            // A heading that is not controlled goes with few other keys: a test of its own.
+            ("budget", "energy_max_j")
+            | ("search", "risk_extra_hops_max")
+            | ("uncertainty", "heading" | "takeoff_speed_m_s" | "takeoff_angle_deg") => false,
             ("budget", _) => !degrees,
             ("derating", "landing_speed") => points && degrees,
             ("search", "points_per_segment")

@@ -549,7 +549,7 @@ mod errata {
         }
     }
 
-    /// Section 4 draws the landing within X_max = v^2 / g, which needs a take-off at 45 degrees: friction of at least 1.
+    /// Section 4 draws the landing within `X_max = v^2 / g`, which needs a take-off at 45 degrees: friction of at least 1.
     #[test]
     fn the_greatest_reach_on_level_ground_needs_a_friction_of_one() {
         let reach = |mu: f64| {

@@ -93,9 +93,13 @@ class Chain:
 
     def takeoff_set(self, from_x_m: ArrayLike, to_x_m: ArrayLike, *, threads: int | None = None) -> TakeoffSet:
         """The feasible take-off angles of a hop between each pair of positions, which broadcast."""
-        start, end = np.broadcast_arrays(np.asarray(from_x_m, np.float64), np.asarray(to_x_m, np.float64))
+        start, end = np.asarray(from_x_m, np.float64, order="C"), np.asarray(to_x_m, np.float64, order="C")
+        if start.shape != end.shape:
+            start, end = np.broadcast_arrays(start, end)
+        elif start.ndim == 1:
+            return TakeoffSet(*self._inner.takeoff_set(start, end, threads))
         shape = start.shape
-        least, greatest, limit = self._inner.takeoff_set(np.ravel(start), np.ravel(end), threads)
+        least, greatest, limit = self._inner.takeoff_set(start.ravel(), end.ravel(), threads)
         return TakeoffSet(least.reshape(shape), greatest.reshape(shape), limit.reshape(shape))
 
     def hop(self, from_x_m: float, to_x_m: float) -> dict[str, Any]:

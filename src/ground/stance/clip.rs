@@ -6,10 +6,13 @@
 
 use nalgebra::{Point3, Vector3};
 
-use crate::world::{HalfSpace, Limb, Shell, Workspace};
+use crate::world::{HalfSpace, Limb, Shell, TrunkBounds, Workspace};
 
 /// The greatest side of a cell, as a share of the greater radius of a shell.
 const CELL: f64 = 0.125;
+
+/// How far the corners of a triangle are from its middle at most, as a share of its longest side: two thirds of a median, rounded up.
+const FROM_THE_MIDDLE: f64 = 0.666_666_67;
 
 /// The room of a ball for rounding, as a share of the coordinates that it holds.
 const ROUNDING: f64 = 1e-12;
@@ -34,10 +37,17 @@ pub(super) struct Clipper {
 
 impl Clipper {
     /// Visits the parts of a triangle, in the trunk frame, that the foot of a limb reaches.
-    pub(super) fn pieces(&mut self, limb: &Limb, triangle: &[Point3<f64>; 3], mut visit: impl FnMut(Piece)) {
+    ///
+    /// `bounds`: those of the limb.
+    pub(super) fn pieces(
+        &mut self,
+        (limb, bounds): (&Limb, TrunkBounds),
+        triangle: &[Point3<f64>; 3],
+        mut visit: impl FnMut(Piece),
+    ) {
         let [a, b, c] = triangle;
         let around = [a.inf(b).inf(c), a.sup(b).sup(c)];
-        if !meet(around, limb.bounds()) {
+        if !meet(around, bounds) {
             return;
         }
         match &limb.workspace {
@@ -51,7 +61,7 @@ impl Clipper {
             }
             Workspace::Shell(shell) if shell.radius_max_m() > 0.0 => {
                 self.start(triangle);
-                if self.clip(&sides_of(limb.bounds()), around) {
+                if self.clip(&sides_of(bounds), around) {
                     let [first, rest @ ..] = &self.polygon[..] else { return };
                     for pair in rest.windows(2) {
                         cells([*first, pair[0], pair[1]], (shell, &limb.hip_m), &mut visit);
@@ -134,7 +144,9 @@ fn cells(triangle: [Point3<f64>; 3], of: (&Shell, &Point3<f64>), visit: &mut imp
     let sides = [(b - a).norm_squared(), (c - b).norm_squared(), (a - c).norm_squared()];
     let longest = (0..3).max_by(|i, j| sides[*i].total_cmp(&sides[*j])).unwrap_or(0);
     let side = sides[longest].sqrt();
-    if (middle - hip).norm() > shell.radius_max_m() + side {
+    let away_m = (middle - hip).norm();
+    let reach_m = side * FROM_THE_MIDDLE;
+    if away_m > shell.radius_max_m() + reach_m || away_m + reach_m < shell.radius_min_m() {
         return;
     }
     if side > CELL * shell.radius_max_m() {
@@ -197,7 +209,7 @@ mod tests {
                 let size_m = [1e-3, 0.1, 1.0, 20.0][draw.below(4)];
                 let triangle = [(); 3].map(|()| middle + Vector3::from_fn(|_, _| draw.uniform(-size_m, size_m)));
                 let mut found = None;
-                clipper.pieces(&limb, &triangle, |piece| found = Some(piece));
+                clipper.pieces((&limb, limb.bounds()), &triangle, |piece| found = Some(piece));
                 let plain = plainly(&triangle, convex.half_spaces());
                 let expected = if plain.len() > 2 { middle_of(&plain) } else { None };
                 let area_m2 = |piece: Option<Piece>| piece.map_or(0.0, |piece| piece.area_m2);

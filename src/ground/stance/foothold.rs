@@ -194,7 +194,8 @@ impl StanceGround {
 
     /// The parts of facets that a foot reaches, put together by their normals in the trunk frame, and the reason if the list is empty.
     fn groups(&self, pose: &Pose, limb: &Limb, clipper: &mut Clipper) -> (Vec<Group>, LimbOutcome) {
-        let [low, high] = around(pose, limb.bounds());
+        let bounds = limb.bounds();
+        let [low, high] = around(pose, bounds);
         let mut groups: Vec<Group> = Vec::new();
         let mut outcome = LimbOutcome::NoGround;
         self.mesh().tree().visit(
@@ -202,7 +203,7 @@ impl StanceGround {
             |facet, corners| {
                 let inside = corners.map(|corner| pose.to_trunk(&corner));
                 let Some(normal) = (inside[1] - inside[0]).cross(&(inside[2] - inside[0])).try_normalize(0.0) else { return };
-                clipper.pieces(limb, &inside, |piece| {
+                clipper.pieces((limb, bounds), &inside, |piece| {
                     if normal.dot(&(limb.hip_m - piece.middle)) <= 0.0 {
                         outcome = worse(outcome, LimbOutcome::FacesAway);
                     } else if self.keeps_feet_off(facet) || self.map_keeps_off(pose, &piece) {

@@ -13,6 +13,7 @@ use crate::{
     path::{Hop, HopPath},
     planner::{Amount, TotalBudget},
     progress::Progress,
+    quantity::total,
     reach::map::{
         HopMap, Journey, MapHop, MapObjective, Mobility, Post, PostHops, Search, Source, joined, least_totals, mobility, search,
         totals_along, verify,
@@ -230,7 +231,7 @@ impl PreparedMap {
     /// How many nodes the hops to the goals span on average; `None` without hops.
     fn spanned_nodes(&self, hops: &[Hop]) -> Option<f64> {
         let nodes = self.nodes();
-        let runs_m: f64 = hops.iter().map(|hop| hop.landing.along_m - hop.takeoff.along_m).sum();
+        let runs_m = total(hops.iter().map(|hop| hop.landing.along_m - hop.takeoff.along_m));
         #[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
         let spanned = runs_m / (hops.len() as f64 * nodes.dx_m().max(nodes.dy_m()));
         (!hops.is_empty()).then_some(spanned)

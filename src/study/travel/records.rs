@@ -5,7 +5,7 @@ use crate::{
     drive::{DriveLeg, Extreme},
     ground::MapPosition,
     path::{Hop, HopPath, heading_deg},
-    quantity::Angle,
+    quantity::{Angle, total},
     report::{DriveLegRecord, DriveMarginsRecord, HopLegRecord, HopRecord, TravelTotalsRecord},
     world::{HopperLimits, Rover},
 };
@@ -30,7 +30,7 @@ pub(in crate::study) fn hop_leg(
 /// Straight lines driven one after another.
 pub(in crate::study) fn drive_leg(rover: &Rover, driven: &Driven, leg: usize) -> DriveLegRecord {
     let Driven { places, legs, turn_time_s } = driven;
-    let sum = |of: fn(&DriveLeg) -> f64| legs.iter().map(of).sum::<f64>();
+    let sum = |of: fn(&DriveLeg) -> f64| total(legs.iter().map(of));
     let (first, last) = (places[0], places[places.len() - 1]);
     // The steepest of all lines, up or down, with its place.
     let of_line = |(number, line): (usize, &DriveLeg)| {
@@ -67,14 +67,14 @@ pub(in crate::study) fn sums_record(
     flown: &HopPath,
     [mission_time_s, energy_j_kg, distance_m]: [f64; 3],
 ) -> TravelTotalsRecord {
-    let sum = |of: fn(&DriveLeg) -> f64| driven.iter().flat_map(|driven| &driven.legs).map(of).sum::<f64>();
+    let sum = |of: fn(&DriveLeg) -> f64| total(driven.iter().flat_map(|driven| &driven.legs).map(of));
     let drive_length_m = sum(|leg| leg.length_m);
     let rate = rover.limits().failure_per_m;
     TravelTotalsRecord {
         hops: flown.hops.len() as u64,
         drive_legs: stretches,
         mission_time_s,
-        drive_time_s: sum(|leg| leg.time_s) + driven.iter().map(|driven| driven.turn_time_s).sum::<f64>(),
+        drive_time_s: sum(|leg| leg.time_s) + total(driven.iter().map(|driven| driven.turn_time_s)),
         flight_time_s: flown.totals.flight_time_s,
         energy_j_kg,
         energy_j: limits.mass_kg.map(|mass_kg| mass_kg * energy_j_kg),

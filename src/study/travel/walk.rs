@@ -11,6 +11,7 @@ use crate::{
     ground::{DemGround, MapPosition, Surface},
     path::{DrivenAgain, Hop, HopPath, drive_again},
     planner::{Amount, Amounts, MissionMove, MissionPath, SearchedCommands},
+    quantity::total,
     world::Rover,
 };
 
@@ -132,7 +133,7 @@ fn turn_time_s(rover: &Rover, places: &[MapPosition]) -> f64 {
         let turn = (pair[1] - pair[0]).abs() % 360.0;
         turn.min(360.0 - turn)
     });
-    rover.limits().turn_s_per_deg * turned.sum::<f64>()
+    rover.limits().turn_s_per_deg * total(turned)
 }
 
 /// What the stretches take, added up anew: mission time, energy and distance, which are those of the search.
