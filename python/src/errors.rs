@@ -41,7 +41,7 @@ impl Class {
 
     fn of(error: &AskError) -> Self {
         match error {
-            AskError::Open(OpenError::File(error)) => Self::of_pipeline(error),
+            AskError::Open(OpenError::File(error)) | AskError::Fan(FanStudyError::Dem(error)) => Self::of_pipeline(error),
             AskError::Open(OpenError::Case(error)) | AskError::Require(RequireError::Case(error)) => Self::of_case(error),
             AskError::Journey(error)
             | AskError::Check(CheckError::Journey(error))
@@ -55,11 +55,10 @@ impl Class {
                 Self::Terrain
             }
             AskError::Fan(FanStudyError::TooMuchMemory { .. }) => Self::TooLarge,
-            AskError::Fan(FanStudyError::Dem(error)) => Self::of_pipeline(error),
             AskError::Stance(StanceError::Terrain(_)) => Self::Terrain,
-            AskError::Arena(ArenaError::Defect(_)) => Self::Other,
             AskError::Legs(LegsRouteError::Pipeline(error)) => Self::of_pipeline(error),
             AskError::Plan(PlanError::Defect(_))
+            | AskError::Arena(ArenaError::Defect(_))
             | AskError::MeshRoute(MeshRouteError::Defect(_) | MeshRouteError::Lost)
             | AskError::Legs(LegsRouteError::Defect { .. })
             | AskError::Json(_) => Self::Other,

@@ -154,6 +154,17 @@ fn walks_and_hops_together_are_the_best_of_all_pairs_tried_one_by_one() {
             let route = roadmap.route(&all, (0, 1), &asked).unwrap();
             let expected = brute_force(&all, &contacts, amount, |_, _| true);
             assert_eq!(route.path.as_ref().is_some(), expected.is_some(), "scene {scene}, {amount}");
+            // What is left from every node is what the best route from there takes.
+            let left = roadmap.left(&all, (0, 1), &asked).unwrap();
+            for (node, left) in left.iter().enumerate() {
+                let best = roadmap.route(&all, (node, 1), &asked).unwrap().path.map(|path| path.totals.of(amount));
+                let agree = match (best, left) {
+                    (Some(best), Some(left)) => (best - left.amount).abs() <= 1e-9 * (1.0 + best),
+                    (None, None) => true,
+                    _ => false,
+                };
+                assert!(agree, "scene {scene}, node {node}: {left:?}, expected {best:?} of {amount}");
+            }
             let (Some(path), Some(expected)) = (route.path, expected) else {
                 without += 1;
                 continue;
