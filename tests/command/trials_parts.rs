@@ -96,7 +96,7 @@ fn the_density_of_rests_is_that_of_the_landings() {
         (from, bands, counted) = (to, bands + 1, counted + held);
     }
     assert!(
-        (3..=7).contains(&bands) && counted == of_ends.iter().filter(|share| **share > 0.0).count(),
+        (1..=7).contains(&bands) && counted == of_ends.iter().filter(|share| **share > 0.0).count(),
         "{bands} bands, {counted}"
     );
     assert!(picture.contains("the area") && picture.contains(&format!("inside the area: {:.4}", share("inside_share"))));

@@ -186,7 +186,7 @@ fn a_fan_over_a_plain_reaches_every_end_with_the_fewest_hops() {
     }
     let svg = fs::read_to_string(at.join("rose.svg")).unwrap();
     assert!(
-        svg.starts_with("<svg") && svg.contains("2 hops") && svg.contains("N (grid)") && svg.contains("not reached"),
+        svg.starts_with("<svg") && svg.contains("2 hops") && svg.contains("N (grid)") && !svg.contains("not reached"),
         "{}",
         &svg[..400]
     );
@@ -196,7 +196,8 @@ fn a_fan_over_a_plain_reaches_every_end_with_the_fewest_hops() {
         assert_eq!(text(&other.stdout), text(&open.stdout));
     }
     // A zone 18 m wide to the east: the fan ends at its near border in that direction.
-    let kept = json(&fan(&["--scenario", "kept.toml", "-o", "fan.csv"]));
+    let kept = json(&fan(&["--scenario", "kept.toml", "-o", "fan.csv", "--plot", "kept.svg"]));
+    assert!(fs::read_to_string(at.join("kept.svg")).unwrap().contains("not reached"));
     let east = &kept["rays"][2];
     assert!((east["farthest_m"].as_f64().unwrap() - 10.0).abs() < 1e-9 && east["hops_to_end"].is_null(), "{east}");
     assert_eq!(east["first_refusing_limit"], "keep-out");
