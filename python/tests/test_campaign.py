@@ -34,6 +34,15 @@ def test_rows_are_those_of_single_questions_and_errors_stay_in_their_row() -> No
     assert {row["holds"] for row in done.rows} == {True, False, None}
 
 
+def test_warnings_of_all_cases_are_counted() -> None:
+    listed = [{"hopper.takeoff_speed_max_m_s": 5.0, "uncertainty.trials": trials} for trials in (100, 100, 200)]
+    done = chta.campaign.run(listed, SCENARIO)
+    said = [set(document["warnings"]) for document in done.documents() if document]
+    assert len(said) == 3 and done.warnings == {text: sum(text in each for each in said) for text in set().union(*said)}
+    # A key without effect on a plan is said of every case that sets it.
+    assert sum(count for text, count in done.warnings.items() if "uncertainty.trials" in text) == 3
+
+
 def test_batches_and_folders_change_no_byte(tmp_path: pathlib.Path) -> None:
     listed = cases(23)
     plain = chta.campaign.run(listed, SCENARIO, batch=23)

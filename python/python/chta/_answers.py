@@ -381,14 +381,24 @@ class Sites(Answer):
 
     def plot(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.axes.Axes:
         """Draws the candidates on the map, by the share of the nodes that each reaches, the best with their ranks (extra ``plot``)."""
+        from matplotlib.patheffects import withStroke
+
         axes = _axes(ax)
         rows = self.rows
         shown = axes.scatter(
-            [row["x_m"] for row in rows], [row["y_m"] for row in rows], c=[row["reachable_share"] for row in rows], vmin=0, vmax=1
+            [row["x_m"] for row in rows],
+            [row["y_m"] for row in rows],
+            c=[row["reachable_share"] for row in rows],
+            vmin=0,
+            vmax=1,
+            edgecolors="black",
+            linewidths=0.5,
+            zorder=3,
+            clip_on=False,
         )
         for rank, row in enumerate(rows[:LABELLED], start=1):
-            axes.annotate(str(rank), (row["x_m"], row["y_m"]), xytext=(5, 5), textcoords="offset points")
-        axes.margins(0.1)
+            label = axes.annotate(str(rank), (row["x_m"], row["y_m"]), xytext=(5, 4), textcoords="offset points", zorder=4)
+            label.set_path_effects([withStroke(linewidth=2, foreground="white")])
         axes.figure.colorbar(shown, ax=axes, label="share of the nodes reached")
         axes.set_aspect("equal")
         axes.set_xlabel("x (m)")
