@@ -50,7 +50,7 @@ impl Reply {
         PyBytes::new(py, self.0.json.as_bytes())
     }
 
-    /// The ground along its path, x and z one after the other, m; empty where there is none.
+    /// The ground along its path, x and z one after the other, m. Empty if the path is not along a chain or over slices of a DEM.
     fn ground<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.0.ground.iter().flat_map(|point| [point.x_m, point.z_m]).collect::<Vec<f64>>().into_pyarray(py)
     }

@@ -10,6 +10,7 @@ use super::{
     legs_ends::{LegsEnds, POSTS_MAX, legs_ends, planned_map},
     legs_walk::Walking,
     mesh_route::{answer, left_out},
+    objective::roadmap_question,
     stance::{best_stance, with_robot},
 };
 #[cfg(feature = "plot")]
@@ -20,7 +21,7 @@ use crate::{
     ground::{NoFriction, Stance, StanceGround, StanceMap},
     path::{HopPath, StanceViolation, flown_by_stances, path_over_stances},
     planner::{
-        LabelCap, StanceSampler,
+        StanceSampler,
         roadmap::{
             ContactSampler, GrownRoadmap, RoadmapGround, RoadmapLimits, RoadmapPath, RoadmapPlanner, RoadmapQuestion, grow_roadmap,
             grow_until_joined,
@@ -188,7 +189,6 @@ pub struct LegsRouted {
 ///
 /// # Errors
 /// [`LegsRouteError`].
-#[expect(clippy::too_many_lines, reason = "one plan from its files to its answer, step by step")]
 pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> Result<LegsRouted, LegsRouteError> {
     let LegsRouteQuestion { scenario, base } = question;
     let file = base.join(scenario.legs.file.as_deref().unwrap_or_else(|| Path::new("")));
@@ -219,13 +219,7 @@ pub fn legs_route(question: LegsRouteQuestion<'_>, progress: &dyn Progress) -> R
     let contacts = ContactSampler::new(ground.mesh(), search.bounds, 0.0, seed).map_err(MeshRouteError::from)?;
     let mut sampler = StanceSampler::new(&ground, contacts, seed);
     let (objective, budgets) = (scenario.full_objective(), scenario.total_budgets());
-    let asked = RoadmapQuestion {
-        objective: &objective,
-        budgets: &budgets,
-        commands: scenario.commands,
-        takeoff: scenario.search.takeoff,
-        cap: LabelCap::default(),
-    };
+    let asked = roadmap_question(scenario, &objective, &budgets);
     let limits = search.limits();
     let walking = Walking::of(scenario, map.as_ref().map(|map| planned_map(map, scenario)));
     let grown = match &walking {

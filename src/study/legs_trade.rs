@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::{
     LegsRouteError, LegsRouteQuestion, MeshRouteError,
     legs_ends::{LegsEnds, legs_ends, planned_map},
+    objective::roadmap_question,
     stance::{best_stance, pairs_of, with_robot},
 };
 use crate::{
@@ -12,8 +13,8 @@ use crate::{
     ground::{MeshGround, Stance, StanceGround, StanceMap},
     path::{flown_by_stances, path_over_stances},
     planner::{
-        LabelCap, StanceSampler,
-        roadmap::{ContactSampler, Roadmap, RoadmapQuestion, RoadmapSampler},
+        StanceSampler,
+        roadmap::{ContactSampler, Roadmap, RoadmapSampler},
     },
     progress::Progress,
     reach::stances::{DIRECTIONS, beam_deg, direction},
@@ -166,13 +167,7 @@ impl<'e> Traded<'e> {
 /// Hops and time in flight of the best path from the first stance to the second, flown again.
 fn best_path(scenario: &Scenario, ground: &StanceGround, roadmap: &Roadmap<Stance>) -> Result<Option<(u64, f64)>, LegsRouteError> {
     let (objective, budgets) = (scenario.full_objective(), scenario.total_budgets());
-    let asked = RoadmapQuestion {
-        objective: &objective,
-        budgets: &budgets,
-        commands: scenario.commands,
-        takeoff: scenario.search.takeoff,
-        cap: LabelCap::default(),
-    };
+    let asked = roadmap_question(scenario, &objective, &budgets);
     let route = roadmap.route(ground, (0, 1), &asked)?;
     let Some(found) = route.path.filter(|_| route.within) else { return Ok(None) };
     let stances: Vec<&Stance> = found.contacts.iter().map(|node| roadmap.contact(*node)).collect();

@@ -108,9 +108,13 @@ fn left_out(scenario: &Scenario) -> Vec<String> {
     let mut warnings = Vec::new();
     let errors = scenario.uncertainty.as_ref().map(|keys| &keys.errors);
     if errors.is_none_or(crate::uncertainty::Uncertainty::is_none) {
-        warnings.push(
-            "[uncertainty] states no error: every trial is the plan itself, and its success says nothing about reliability"
-                .to_owned(),
+        let stated = match scenario.drives() {
+            None => Some("[uncertainty] states no error"),
+            Some(keys) => keys.rover.limits().is_exact().then_some("neither [uncertainty] nor [drive] states an error"),
+        };
+        warnings.extend(
+            stated
+                .map(|stated| format!("{stated}: every trial is the plan itself, and its success says nothing about reliability")),
         );
     }
     if errors.is_some_and(|errors| errors.height_sigma_m > 0.0 || errors.friction_sigma > 0.0) {

@@ -2,6 +2,7 @@
 
 use super::{
     LegsRouteError, LegsRouted, MeshRouteError,
+    objective::roadmap_question,
     travel::{Driven, agreed, drive_leg, driven_again, hop_leg, sums_record},
 };
 use crate::{
@@ -9,8 +10,8 @@ use crate::{
     ground::{DemGround, Stance, StanceGround},
     path::HopPath,
     planner::{
-        LabelCap, WalkingStances,
-        roadmap::{GrownRoadmap, Left, RoadmapMove, RoadmapPath, RoadmapQuestion},
+        WalkingStances,
+        roadmap::{GrownRoadmap, Left, RoadmapMove, RoadmapPath},
     },
     progress::Cancelled,
     report::{DriveRefusalRecord, HopRecord, LegsWalkRecord, TravelLegRecord, TravelTotalsRecord},
@@ -65,13 +66,7 @@ impl Walking {
     /// [`Cancelled`].
     pub(super) fn in_trials(&self, routed: &LegsRouted, scenario: &Scenario) -> Result<LegsWalking, Cancelled> {
         let (objective, budgets) = (scenario.full_objective(), scenario.total_budgets());
-        let question = RoadmapQuestion {
-            objective: &objective,
-            budgets: &budgets,
-            commands: scenario.commands,
-            takeoff: scenario.search.takeoff,
-            cap: LabelCap::default(),
-        };
+        let question = roadmap_question(scenario, &objective, &budgets);
         let roadmap = &routed.grown.roadmap;
         let left = roadmap.left(&self.over(&routed.ground), routed.grown.ends, &question)?;
         let aims = left.into_iter().enumerate().filter_map(|(node, left)| Some((roadmap.contact(node).clone(), left?)));

@@ -10,6 +10,7 @@ use super::{
     front::{amount_row, front_commands, front_hops_max},
     mesh_ends::{MeshEnds, mesh_ends},
     mesh_flown::flown_again,
+    objective::roadmap_question,
 };
 use crate::{
     graph::proof::ProofVerdict,
@@ -149,13 +150,7 @@ pub fn mesh_route(question: &MeshRouteQuestion<'_>, progress: &dyn Progress) -> 
     let search = &scenario.mesh_search;
     let mut sampler = ContactSampler::new(&ground, search.bounds, stand_off_m, search.seed.unwrap_or(0))?;
     let (objective, budgets) = (scenario.full_objective(), scenario.total_budgets());
-    let asked = RoadmapQuestion {
-        objective: &objective,
-        budgets: &budgets,
-        commands: scenario.commands,
-        takeoff: scenario.search.takeoff,
-        cap: LabelCap::default(),
-    };
+    let asked = roadmap_question(scenario, &objective, &budgets);
     let limits = search.limits();
     let (grown, joined) = match (question.roadmap, search.planner) {
         (Some(file), _) => {

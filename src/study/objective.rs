@@ -6,7 +6,7 @@ use crate::{
     chain::Station,
     graph::{Answer, NodeSet, Outcome, ReliabilityOptions},
     hop::HopTest,
-    planner::{Amount, ChainQuestion, LabelCap, search_on_chain},
+    planner::{Amount, Budgets, ChainQuestion, LabelCap, Objective, roadmap::RoadmapQuestion, search_on_chain},
     progress::Progress,
     report::ObjectiveRecord,
     scenario::Scenario,
@@ -18,6 +18,12 @@ pub(super) struct ByObjective {
     pub(super) found: Answer,
     pub(super) record: ObjectiveRecord,
     pub(super) warnings: Vec<String>,
+}
+
+/// What the roadmap of a scenario is searched for, with its whole objective and budgets.
+pub(super) fn roadmap_question<'a>(scenario: &Scenario, objective: &'a Objective, budgets: &'a Budgets) -> RoadmapQuestion<'a> {
+    let (commands, takeoff) = (scenario.commands, scenario.search.takeoff);
+    RoadmapQuestion { objective, budgets, commands, takeoff, cap: LabelCap::default() }
 }
 
 /// Plans by the objective of a scenario, within its budgets; `None` if it has neither.

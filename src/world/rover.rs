@@ -190,6 +190,11 @@ pub struct RoverLimits {
 }
 
 impl RoverLimits {
+    /// Whether it drives as commanded: without errors of heading and length, and without failures.
+    pub fn is_exact(&self) -> bool {
+        self.heading_sigma.degrees() == 0.0 && self.length_sigma_fraction == 0.0 && self.failure_per_m == 0.0
+    }
+
     /// A rover of a speed that climbs, descends and crosses slopes up to an angle, and states nothing else.
     pub fn new(speed_m_s: f64, slope_max: Angle) -> Self {
         Self {

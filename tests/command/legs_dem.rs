@@ -469,6 +469,9 @@ fn trials_of_a_robot_that_walks_have_the_errors_of_its_walks() {
     let expected = (-0.05 * length_m).exp();
     assert!(low < expected && expected < high && high - low < 0.07, "{expected} of {length_m} m: {low} to {high}");
     assert!(outcomes.len() == 2 && outcomes[1].0 == "walk_failed", "{outcomes:?}");
+    // Errors of walks are errors; without any, the trials say that they show nothing.
+    let shows_nothing = |document: &Value| document["warnings"].to_string().contains("every trial is the plan itself");
+    assert!(!shows_nothing(&failing) && shows_nothing(&of("walk.toml", &["--trials", "1"])));
     // Walks that are too long or too short by 5 % miss a goal within 0.1 m far away; a robot that replans goes on until it is there.
     let long = ["--trials", "60", "--set", "drive.length_sigma_fraction=0.05", "--set", "uncertainty.goal_tolerance_m=0.1"];
     let by = |policy: &str| trials(&of("walk.toml", &[&["--policy", policy][..], &long].concat()));

@@ -21,7 +21,7 @@ pub struct Reply {
     pub json: String,
     /// Whether the answer is yes: a path exists, a hop is feasible, a success is shown.
     pub holds: bool,
-    /// The ground along the path, from the distance at which its hops are counted; empty where there is none.
+    /// The ground along the path, by the distance that its hops are counted from. Empty if the path is not along a chain or over slices of a DEM.
     pub ground: Vec<ChainPoint>,
     #[cfg(feature = "plot")]
     draw: Option<Draw>,

@@ -98,10 +98,7 @@ fn mission(planned: &TravelPlanned) -> Result<Option<(TravelMission, Vec<usize>)
 /// What the trials leave out of a scenario.
 fn left_out(scenario: &Scenario) -> Vec<String> {
     let mut warnings = Vec::new();
-    let limits = scenario.drive.as_ref().map(|keys| keys.rover.limits());
-    let is_exact = limits.is_none_or(|limits| {
-        limits.heading_sigma.degrees() == 0.0 && limits.length_sigma_fraction == 0.0 && limits.failure_per_m == 0.0
-    });
+    let is_exact = scenario.drive.as_ref().is_none_or(|keys| keys.rover.limits().is_exact());
     if scenario.uncertainty.as_ref().is_none_or(|keys| keys.errors.is_none()) && is_exact {
         warnings.push(
             "neither [uncertainty] nor [drive] states an error: every trial is the plan itself, and its success says nothing about reliability"
