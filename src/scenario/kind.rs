@@ -115,7 +115,7 @@ impl Kind {
                     .to_owned()
             }
             Self::Layer => {
-                "a table with raster (a path), min, max or equals (numbers), applies_to (contact, flight or both) and the keys of an outage, such as [layer.sun]"
+                "a table with raster (a path), min, max or equals (numbers), applies_to (contact, flight or a list of both) and the keys of an outage, such as [layer.sun]"
                     .to_owned()
             }
             Self::Text => "a text in quotes, not empty".to_owned(),

@@ -7,7 +7,7 @@ use std::{
 
 use super::{
     CaseRecord, JourneyEnd, Overlays, PipelineError, Prepared, Survey, footprint::SlicedDem, free_route::free_alone,
-    pipeline::planned_over, scenario_files, with_measured_errors,
+    overlays::planned_over, scenario_files, with_measured_errors,
 };
 use crate::{
     chain::{PolygonalChain, Station},

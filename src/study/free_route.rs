@@ -10,7 +10,7 @@ use super::{
     gap_keys::gap_keys,
     nodes::{coarse_nodes, level_hop_m, nodes_per_post},
     objective,
-    pipeline::planned_over,
+    overlays::planned_over,
 };
 use crate::{
     ballistics::{PathBounds, TakeoffChoice},

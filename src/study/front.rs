@@ -6,7 +6,7 @@ use super::{
     Case, JourneyError, SimulateError,
     dem_ground::dem_ground,
     journey::Searched,
-    pipeline::planned_over,
+    overlays::planned_over,
     to_go::{Replanning, ToGo},
 };
 use crate::{

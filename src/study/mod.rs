@@ -67,6 +67,7 @@ mod nodes;
 mod objective;
 mod on_body;
 pub mod open;
+mod overlays;
 #[cfg(feature = "plot")]
 mod page;
 mod physics;
@@ -126,10 +127,11 @@ pub use mesh_read_back::{MeshChecked, MeshReadBackError, MeshResultPath, check_o
 pub use mesh_route::{MeshRouteError, MeshRouteQuestion, MeshRouted, mesh_route};
 pub use mesh_trials::{MeshSimulated, MeshTrialsError, merged_over_mesh, simulate_over_mesh, tally_over_mesh};
 pub use on_body::{OfBody, dem_on_body, on_body};
+pub use overlays::{Overlays, friction};
 #[cfg(feature = "plot")]
 pub use page::{DocumentInPage, PageDocuments, PageError, page_ground, page_ground_over_facets};
 pub use physics::{Extent, Extremes, TooLarge, constant_gravity_warnings};
-pub use pipeline::{DemReading, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, friction, prepare, sha256_of};
+pub use pipeline::{DemReading, JourneyEnd, PipelineError, Prepared, Survey, Transect, prepare, sha256_of};
 pub use plan::{Defect, PlanError, PlanOptions, Planned, plan};
 pub use read_back::ReadBackError;
 pub use record::{CaseRecord, checksums, comparison_document, raster_files, scenario_files};

@@ -13,6 +13,7 @@ use chta::report::{
     TravelSimulateAnswer,
 };
 use chta::scenario::{Scenario, scenario_document};
+use rayon::prelude::*;
 use serde::{Serialize, de::DeserializeOwned};
 
 use crate::desk::chta;
@@ -140,7 +141,7 @@ pub(crate) fn documents() -> &'static [(String, String)] {
             assert!(status < 2 && !stdout.is_empty(), "{command}: {stderr}");
             (command, stdout)
         };
-        let mut documents: Vec<_> = commands.into_iter().map(written).collect();
+        let mut documents: Vec<_> = commands.into_par_iter().map(written).collect();
         // The result of a run is there once it was written; under another gravity its path breaks limits.
         documents.push(written(format!("check {}", file("space/result.json"))));
         documents.push(written(format!("check {} --set body.gravity_m_s2=9", file("space/result.json"))));

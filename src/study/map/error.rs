@@ -35,7 +35,7 @@ pub enum MapStudyError {
     )]
     NoTargetOfTrials,
     /// A start or goal off the map.
-    #[error("{name} ({:.3}, {:.3}) m lies off the map, which covers {bounds}", at.x, at.y)]
+    #[error("{name} ({:.3}, {:.3}) m lies off the map, which covers {bounds}; choose a position there", at.x, at.y)]
     OffMap {
         /// What the caller calls it.
         name: String,

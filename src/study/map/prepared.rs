@@ -14,7 +14,7 @@ use crate::{
         DemReading, JourneyEnd, Overlays, coarse_dem_warning, dem_on_body,
         free_route::without_layers_of_paths,
         nodes::{coarse_map_nodes, level_hop_m, post_spacing_m},
-        pipeline::planned_over,
+        overlays::planned_over,
         with_measured_errors,
     },
     terrain::{Dem, GeoReference, MapProjection, NoProjection, check_map_scale},
