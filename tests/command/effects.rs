@@ -171,10 +171,8 @@ fn every_key_changes_the_answer_or_is_said_to_have_no_effect() {
     );
     desk.write("errors.toml", format!("{RICH}{ERRORS}"));
     desk.write("risk.toml", format!("{RICH}{ERRORS}risk = \"traded\"\n"));
-    let on_dem = RICH.replace(
-        "chain = \"chain.csv\"\nstart_x_m = 0\ngoal_x_m = 40",
-        "dem = \"ground.tif\"\nstart_m = [1, 2]\ngoal_m = [8, 7]",
-    );
+    let on_dem = RICH
+        .replace("chain = \"chain.csv\"\nstart_x_m = 0\ngoal_x_m = 40", "dem = \"ground.tif\"\nstart_m = [1, 2]\ngoal_m = [8, 7]");
     desk.write("slow.toml", format!("{RICH}{ERRORS}").replace("max_m_s = 2.5", "max_m_s = 1.5"));
     desk.write("dem.toml", format!("{on_dem}{ERRORS}").replace("max_m_s = 2.5", "max_m_s = 1.5"));
     let vary = "hopper.takeoff_speed_max_m_s=1:3:3";
