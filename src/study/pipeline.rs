@@ -395,7 +395,7 @@ impl Transect {
     /// every leg is within 1 % or accepted. Reads only the posts beside the slices.
     ///
     /// # Errors
-    /// As [`open_dem`](terrain::open_dem), [`MapPlace::on_map`], [`check_scale`] and [`slice_legs`].
+    /// As [`open_dem`](crate::terrain::open_dem), [`MapPlace::on_map`], [`check_scale`] and [`slice_legs`].
     pub fn of_dem(file: &Path, [from, to]: [&MapPlace; 2], via: &[MapPlace], reading: DemReading) -> Result<Self, TerrainError> {
         let DemReading { options, accept_map_scale } = reading;
         let dem = options.open(file)?;
