@@ -43,7 +43,7 @@ def quick(path: str) -> tuple[chta.Scenario, tuple[str, ...]]:
     scenario = chta.Scenario.open(path)
     if path in QUICK:
         return scenario, (path,)
-    return scenario.with_keys({"search.contacts_max": 60}), (path, "--set", "search.contacts_max=60")
+    return scenario.with_keys({"search.contacts_max": 100}), (path, "--set", "search.contacts_max=100")
 
 
 @pytest.mark.parametrize("path", SHIPPED)

@@ -204,7 +204,10 @@ fn positions_that_cannot_be_used_are_told_with_what_mends_them() {
         (on_map(&["--starts", "bad.csv"]), vec!["bad.csv: line 3", "(y_m): found `far`, expected a finite number"]),
         (
             on_map(&["--starts", "off.csv"]),
-            vec!["off.csv, line 3: (160.000, 4.000) m lies off the map, which covers x from 0 to 19 m"],
+            vec![
+                "off.csv, line 3: (160.000, 4.000) m lies off the map, which covers x from 0 to 19 m",
+                "; choose a position there",
+            ],
         ),
         (on_map(&["--starts", "empty.csv"]), vec!["empty.csv: ", "expected at least 1 position; add a row such as 10,20"]),
         (on_map(&["--starts", "named.csv"]), vec!["named.csv", "x_m"]),
