@@ -24,6 +24,8 @@ mod footprint;
 mod free_route;
 mod free_studies;
 mod gdal_docs;
+#[cfg(feature = "gdal")]
+mod gdal_feature;
 mod gis;
 mod guide;
 mod hop_on_map;

@@ -34,8 +34,6 @@ mod footprint;
 mod formats_table;
 mod free_route;
 mod free_route_objectives;
-#[cfg(feature = "gdal")]
-mod gdal_feature;
 mod graph;
 mod heading_steps;
 mod layers;
