@@ -1,27 +1,16 @@
 //! ISIS and PDS4 through the optional feature `gdal`: a file rewritten by GDAL into either gives the same slice.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "a test that cannot make its files should stop, and says why it skips"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot make its files should stop")]
 
-use std::{path::Path, process::Command};
+use std::process::Command;
 
 use chta::{quantity::MapPoint, terrain::slice_file};
 
-use crate::installed::has_gdal;
+use crate::{installed::has_gdal, real_terrain::real};
 
 #[test]
 fn isis_and_pds4_give_the_slice_of_the_geotiff_they_were_made_from() {
-    let lola = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/dem/lola5m_Shoemaker_final_adj_5mpp_surf_1k.tif");
-    if !lola.exists() {
-        eprintln!("skipped: {} is absent", lola.display());
-        return;
-    }
-    if !has_gdal() {
-        return;
-    }
+    let Some(lola) = real("lola5m_Shoemaker_final_adj_5mpp_surf_1k.tif").filter(|_| has_gdal()) else { return };
     let folder = tempfile::tempdir().unwrap();
     let (from, to) = (MapPoint::new(75_500.0, 38_600.0), MapPoint::new(76_500.0, 39_500.0));
     let expected = slice_file(&lola, from, to).unwrap();

@@ -22,7 +22,8 @@ const fn transect(from: [f64; 2], to: [f64; 2], status: i32) -> Transect {
     Transect { from, to, status }
 }
 
-fn real(name: &str) -> Option<PathBuf> {
+/// The path of a real DEM of `../shared/dem`; says so where it is absent.
+pub(crate) fn real(name: &str) -> Option<PathBuf> {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/dem").join(name);
     if path.exists() {
         Some(path.canonicalize().unwrap())
